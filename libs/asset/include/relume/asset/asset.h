@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The bake inside a .glb: root extension RELUME_transfer (docs/format.md). Read by the run-time library, which has no glTF
+// importer; written through scene::gltf::exportGlb, to which `encode` gives JSON and buffer views.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "relume/core/vec.h"
+
+namespace relume::asset {
+
+/// How a plane's numbers are stored.
+enum class Storage : std::uint8_t { kFloat32, kFloat16, kUnorm8, kUnorm16, kUint32 };
+
+/// A named array of one layer or of the atlas. shape: [count][channels]
+struct Plane {
+  std::string name;                ///< "value", "bent", "position", ...
+  int channels = 1;
+  Storage storage = Storage::kFloat16;
+  float lo = 0, hi = 1;            ///< unorm planes: value = lo + q / max * (hi - lo)
+  std::vector<float> values;       ///< decoded
+};
+
+using Parameter = std::variant<double, std::string, bool>;
+
+struct Layer {
+  std::string name;                ///< "ao", "obscurance", "spectral", ... ; a second one of a kind is "ao.2"
+  std::string kind;                ///< registry name
+  std::string emitters, transport, receivers, codec;  ///< the row of the registry
+  std::map<std::string, Parameter> parameters;        ///< as baked, defaults filled in
+  std::vector<Plane> planes;       ///< over all texels of all pages, dilated: shape [pages*height*width][channels]
+  double error_estimate = 0;       ///< relative RMS standard error of the layer, as estimated by its solver
+  std::uint64_t samples = 0;       ///< rays or paths spent
+};
+
+/// Surface data that relighting needs, per covered texel.
+struct AtlasTable {
+  int width = 0, height = 0;
+  std::uint32_t pages = 0;
+  std::vector<std::uint32_t> texel;   ///< index into the pages, increasing
+  std::vector<Point> position;        ///< world
+  std::vector<Normal> normal;         ///< world, shading
+  std::vector<Vec3> albedo;           ///< diffuse albedo, linear
+  std::vector<std::uint8_t> valid;    ///< 0: buried in geometry, its values were filled from neighbours
+  std::vector<std::uint32_t> chart;
+};
+
+struct Asset {
+  std::string generator;              ///< "relume 0.1.0"
+  std::string input_hash;             ///< of the geometry and settings that were baked
+  AtlasTable atlas;
+  std::vector<Layer> layers;
+
+  const Layer* find(std::string_view name) const;
+  /// Throws Error kNoSuchLayer, naming those there are. An empty name is the first layer.
+  const Layer& layer(std::string_view name) const;
+};
+
+/// JSON text of RELUME_transfer, whose bufferView numbers count in `views`. Deterministic.
+struct Encoded {
+  std::string json;
+  std::vector<std::vector<std::byte>> views;
+};
+Encoded encode(const Asset& asset);
+
+/// Reads the bake out of .glb bytes. Everything is bounds-checked and checksummed. Throws Error kNotGltf, kTruncated,
+/// kCorruptAsset, kUnsupported (a newer version), kNoSuchLayer (the file carries no bake).
+Asset decode(std::span<const std::byte> glb, const std::string& name);
+Asset readAsset(const std::filesystem::path& path);
+
+}  // namespace relume::asset

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+namespace relume {
+const char* version();  ///< e.g. "0.1.0"
+}

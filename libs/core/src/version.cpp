@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+#include "relume/core/version.h"
+namespace relume {
+const char* version() { return RELUME_VERSION; }
+}

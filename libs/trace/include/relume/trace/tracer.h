@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Rays against the static part of a scene. The only part that knows Embree.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "relume/core/vec.h"
+#include "relume/scene/scene.h"
+
+namespace relume::trace {
+
+struct Ray {
+  Point origin;
+  Direction direction;
+  float t_max = kInfinity;  ///< metres
+};
+
+struct RayHit {
+  scene::Hit where;             ///< where.instance == scene::kNone: nothing was hit
+  float t = kInfinity;          ///< metres
+  bool back_face = false;       ///< hit from behind (by winding); a double-sided material never counts as back
+  explicit operator bool() const { return where.instance != scene::kNone; }
+};
+
+/// The point from which a ray that leaves a surface at p starts: moved off along the geometric normal by a few float spacings
+/// of the coordinates (Waechter, Binder, Ray Tracing Gems ch. 6), so it does not hit the surface it leaves.
+Point offsetOrigin(Point p, Normal geometric_normal);
+
+struct TracerOptions {
+  std::string isa;              ///< "", "sse2", "avx", "avx2", "avx512": which kernels Embree uses (bits may differ between them)
+  bool include_dynamic = false; ///< also dynamic instances (pictures)
+};
+
+class Tracer {
+ public:
+  /// Keeps a reference to `scene`, which must outlive it and not change.
+  explicit Tracer(const scene::Scene& scene, const TracerOptions& options = {});
+  ~Tracer();
+  Tracer(Tracer&&) noexcept;
+
+  const scene::Scene& scene() const;
+
+  /// First hit. Alpha: MASK as the cut-off says; BLEND stochastically, by a hash of (seed of the ray, triangle), so that the mean
+  /// over seeds is the opacity.
+  RayHit intersect(const Ray& ray, std::uint32_t alpha_seed = 0) const;
+  /// Whether anything lies on the ray.
+  bool occluded(const Ray& ray, std::uint32_t alpha_seed = 0) const;
+
+  /// Packets of up to 16 rays that start close together and are sorted by direction: several times the rate of single rays.
+  /// Rays with t_max < 0 are skipped. spans: equal length, at most kPacket.
+  static constexpr std::size_t kPacket = 16;
+  void intersectPacket(std::span<const Ray> rays, std::span<const std::uint32_t> alpha_seeds, std::span<RayHit> hits) const;
+  void occludedPacket(std::span<const Ray> rays, std::span<const std::uint32_t> alpha_seeds, std::span<bool> occluded) const;
+
+  std::uint64_t bytes() const;  ///< of the acceleration structure, as Embree counts
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relume::trace
