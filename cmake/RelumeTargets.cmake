@@ -9,6 +9,7 @@ add_library(relume_options INTERFACE)
 target_compile_features(relume_options INTERFACE cxx_std_20)
 target_compile_options(relume_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wnon-virtual-dtor;-Woverloaded-virtual>
+  $<BUILD_INTERFACE:-Wno-missing-field-initializers>  # designated initializers leave the rest at their defaults on purpose
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-maybe-uninitialized;-Wno-restrict>  # GCC 12 false alarms under -O3
   -ffp-contract=off  # bakes repeat bit for bit
 )

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "files.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <vector>
+
+#include "relume/core/file.h"
+
+namespace relume::app {
+
+void print(const Warnings& warnings) {
+  for (const Warning& warning : warnings) fmt::print(stderr, "warning: {}\n", warning.text());
+}
+
+std::unique_ptr<Opened> open(const std::filesystem::path& path) {
+  auto opened = std::make_unique<Opened>();
+  const auto document = scene::gltf::Document::read(path);
+  Warnings warnings;
+  opened->scene = scene::gltf::import(document, warnings);
+  print(warnings);
+  const auto extensions = document.json().find("extensions");
+  if (extensions != document.json().end() && extensions->contains("RELUME_transfer")) opened->asset = asset::readAsset(path);
+  return opened;
+}
+
+Vec3 parseTriple(const std::string& text, const std::string& option, bool one_is_enough) {
+  std::vector<float> values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    float value = 0;
+    const auto [stop, ec] = std::from_chars(text.data() + begin, text.data() + end, value);
+    if (ec != std::errc() || stop != text.data() + end || !(std::abs(value) < kInfinity)) {
+      values.clear();
+      break;
+    }
+    values.push_back(value);
+    begin = end + 1;
+  }
+  if (values.size() == 1 && one_is_enough) return Vec3(values[0]);
+  if (values.size() != 3)
+    throw Error(ErrorCode::kUsage, option + " " + text, "is not three numbers", "write for example " + option + " 1,0.5,2");
+  return {values[0], values[1], values[2]};
+}
+
+IVec2 parseExtent(const std::string& text, const std::string& option) {
+  IVec2 size{0, 0};
+  const char* end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.x);
+  const bool has_height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_height ? std::from_chars(width.ptr + 1, end, size.y) : width;
+  if (!has_height || height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1 || size.x > 16384 || size.y > 16384)
+    throw Error(ErrorCode::kUsage, option + " " + text, "is not a size", "write for example " + option + " 960x540");
+  return size;
+}
+
+std::filesystem::path beside(const std::filesystem::path& input, const std::string& ending) {
+  return input.parent_path() / (input.stem().string() + ending);
+}
+
+}  // namespace relume::app

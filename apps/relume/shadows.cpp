@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "shadows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "relume/core/frame.h"
+#include "relume/core/parallel.h"
+#include "relume/core/sampling.h"
+
+namespace relume::app {
+namespace {
+
+constexpr std::uint32_t kAreaSamples = 16;
+constexpr std::size_t kGrain = 256;  // texels per task
+
+float visibilityOf(const trace::Tracer& tracer, const Light& light, Point p, Normal n, std::uint32_t item) {
+  const Point origin = trace::offsetOrigin(p, n);
+  if (light.kind == Light::Kind::kDirectional)
+    return tracer.occluded({.origin = origin, .direction = -light.direction}, item) ? 0.0f : 1.0f;
+  const bool area = light.kind == Light::Kind::kArea && light.area > 0;
+  const std::uint32_t samples = area ? kAreaSamples : 1;
+  const float radius = area ? std::sqrt(light.area * kInvPi) : 0.0f;
+  const Frame frame = Frame::about(light.direction);
+  std::uint32_t seen = 0;
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    const Vec2 d = area ? radius * squareToDisk(sobol2(s, item)) : Vec2(0);
+    const Vec3 to_light = light.position + frame.toWorld({d.x, d.y, 0}) - origin;
+    const float distance = glm::length(to_light);
+    if (!(distance > 0)) continue;
+    const trace::Ray ray{.origin = origin, .direction = to_light / distance, .t_max = distance * 0.999f};
+    seen += !tracer.occluded(ray, hashCombine(item, s));
+  }
+  return static_cast<float>(seen) / static_cast<float>(samples);
+}
+
+}  // namespace
+
+relight::VisibilitySource tracedVisibility(const trace::Tracer& tracer, const asset::AtlasTable& atlas, const LightSet& lights) {
+  return [&tracer, &atlas, &lights](std::size_t light, std::span<float> visibility) {
+    parallelFor(visibility.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const bool faces = glm::dot(atlas.normal[i], directionTo(lights[light], atlas.position[i])) > 0;
+        visibility[i] = faces ? visibilityOf(tracer, lights[light], atlas.position[i], atlas.normal[i], static_cast<std::uint32_t>(i)) : 0.0f;
+      }
+    });
+  };
+}
+
+}  // namespace relume::app

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The registry of layers. A layer is a row: emitters x transport x receivers x codec, its parameters, and how its texels are
+// computed. A new technique is a new row.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relume/atlas/texels.h"
+#include "relume/bake/layer_spec.h"
+#include "relume/bake/quality.h"
+#include "relume/core/hash.h"
+#include "relume/core/progress.h"
+#include "relume/trace/tracer.h"
+
+namespace relume::bake {
+
+struct ParameterSpec {
+  enum class Type : std::uint8_t { kLength, kChoice, kFlag };
+  std::string name;
+  Type type = Type::kLength;
+  std::string default_value;         ///< as a person would write it; "auto" for a length chosen from the scene's size
+  std::vector<std::string> choices;  ///< kChoice
+  std::string help;                  ///< one line, with the unit
+};
+
+/// What a row may use to compute its texels.
+struct LayerContext {
+  const trace::Tracer& tracer;
+  const atlas::Texels& texels;
+  QualitySettings quality;
+  std::uint64_t seed = 1;
+};
+
+/// A computation in which every texel stands alone: its row of floats depends on nothing farther away than `reach`. That is what makes
+/// it resumable, and what lets a re-bake touch only texels near a change.
+struct TexelSolver {
+  int row = 0;               ///< floats per texel
+  float reach = kInfinity;   ///< metres
+  Digest key;                ///< of every setting that the rows depend on besides the scene
+  /// Fills rows, shape [which][row], of the texels (indices of Texels::points) in `which`; returns rays spent.
+  std::function<std::uint64_t(std::span<const std::uint32_t> which, std::span<float> rows, Progress&)> solve;
+};
+
+/// Planes over the points of Texels (not yet scattered to pages).
+struct PointPlane {
+  std::string name;
+  int channels = 1;
+  bool unit_interval = false;  ///< clamp to [0, 1] after smoothing and stitching
+  bool direction = false;      ///< normalise after smoothing and stitching
+  std::vector<float> values;   ///< shape [points][channels]
+};
+struct PointLayer {
+  std::vector<PointPlane> planes;
+  std::vector<float> error;         ///< standard error per point
+  std::vector<std::uint8_t> valid;  ///< 0: buried in geometry
+};
+
+struct LayerJob {
+  TexelSolver solver;
+  std::function<PointLayer(std::span<const float> rows)> finish;  ///< rows of all points
+};
+
+struct LayerKind {
+  std::string name;
+  std::string summary;
+  std::string emitters, transport, receivers, codec;
+  std::vector<ParameterSpec> parameters;
+  LayerJob (*prepare)(const LayerContext&, const Parameters&) = nullptr;
+};
+
+const std::vector<LayerKind>& registry();
+/// Throws Error kUsage listing the layers there are.
+const LayerKind& find(std::string_view kind);
+
+/// Fills in defaults and checks names, types and ranges. `scene_diagonal`, metres, is what "auto" lengths come from.
+/// Throws Error kUsage naming the parameter and what it may be.
+Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_diagonal);
+
+/// The distance limit that "auto" stands for: 4 m in scenes of human scale, a share of the size in tiny or huge ones (where the
+/// file's unit is hardly the metre).
+float autoDistance(float scene_diagonal);
+
+}  // namespace relume::bake

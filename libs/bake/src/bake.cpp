@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "relume/bake/bake.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pages.h"
+#include "prepared.h"
+#include "relume/core/memory.h"
+#include "relume/core/version.h"
+#include "relume/image/io.h"
+#include "scene_digest.h"
+#include "texel_store.h"
+
+namespace relume::bake {
+namespace {
+
+constexpr std::uint64_t kStoreLimit = std::uint64_t{2} << 30;  // bytes kept in the cache folder
+
+asset::AtlasTable tableOf(const atlas::Texels& texels) {
+  asset::AtlasTable table{.width = texels.width, .height = texels.height, .pages = texels.pages};
+  const std::size_t n = texels.points.size();
+  table.texel.reserve(n), table.position.reserve(n), table.normal.reserve(n), table.albedo.reserve(n), table.chart.reserve(n);
+  table.valid.assign(n, 1);
+  for (const atlas::SurfacePoint& p : texels.points) {
+    table.texel.push_back(p.texel);
+    table.position.push_back(p.position);
+    table.normal.push_back(p.shading_normal);
+    table.albedo.push_back(p.albedo.rgb);
+    table.chart.push_back(p.chart);
+  }
+  return table;
+}
+
+// RMS of the standard errors over valid texels, relative to the RMS of the first plane.
+double relativeError(const PointLayer& layer) {
+  const PointPlane& value = layer.planes.front();
+  const auto channels = static_cast<std::size_t>(value.channels);
+  double error2 = 0, value2 = 0;
+  for (std::size_t i = 0; i < layer.error.size(); ++i) {
+    if (!layer.valid[i]) continue;
+    error2 += static_cast<double>(layer.error[i]) * layer.error[i];
+    double mean = 0;
+    for (std::size_t c = 0; c < channels; ++c) mean += value.values[i * channels + c] / static_cast<double>(channels);
+    value2 += mean * mean;
+  }
+  return value2 > 0 ? std::sqrt(error2 / value2) : 0;
+}
+
+// The grey PNG of each page that ordinary viewers multiply ambient light with.
+std::vector<std::vector<std::byte>> occlusionPages(const asset::Asset& asset) {
+  const asset::Layer* layer = asset.find("ao");
+  if (!layer) layer = asset.find("obscurance");
+  std::vector<std::vector<std::byte>> pages;
+  if (!layer) return pages;
+  const asset::Plane& plane = layer->planes.front();
+  const auto channels = static_cast<std::size_t>(plane.channels);
+  const std::size_t page_texels = static_cast<std::size_t>(asset.atlas.width) * static_cast<std::size_t>(asset.atlas.height);
+  for (std::uint32_t page = 0; page < asset.atlas.pages; ++page) {
+    image::Image grey(asset.atlas.width, asset.atlas.height, 1);
+    for (std::size_t i = 0; i < page_texels; ++i) {
+      const float* v = plane.values.data() + (page * page_texels + i) * channels;
+      grey.data[i] = channels == 3 ? luminance({v[0], v[1], v[2]}) : v[0];
+    }
+    pages.push_back(image::encodePngData(grey));
+  }
+  return pages;
+}
+
+scene::gltf::BakeOutput outputOf(atlas::Atlas& atlas, const asset::Asset& asset) {
+  scene::gltf::BakeOutput output;
+  const Vec2 size(static_cast<float>(atlas.width), static_cast<float>(atlas.height));
+  for (atlas::InstanceUv& uv : atlas.instances) {
+    scene::gltf::AtlasUse use{.instance = uv.instance,
+                              .page = uv.page,
+                              .source_vertex = std::move(uv.source_vertex),
+                              .triangles = std::move(uv.triangles),
+                              .uv = std::move(uv.uv)};
+    for (Vec2& t : use.uv) t = glm::clamp(t / size, Vec2(0), Vec2(1));
+    output.uses.push_back(std::move(use));
+  }
+  output.occlusion_png = occlusionPages(asset);
+  asset::Encoded encoded = asset::encode(asset);
+  output.transfer = nlohmann::json::parse(encoded.json);
+  output.views = std::move(encoded.views);
+  return output;
+}
+
+asset::Layer describe(const PreparedLayer& prepared) {
+  asset::Layer layer;
+  layer.name = prepared.name;
+  layer.kind = prepared.kind->name;
+  layer.emitters = prepared.kind->emitters, layer.transport = prepared.kind->transport;
+  layer.receivers = prepared.kind->receivers, layer.codec = prepared.kind->codec;
+  layer.parameters = prepared.parameters;
+  return layer;
+}
+
+}  // namespace
+
+BakeResult bake(const scene::gltf::Document& document, const BakeOptions& options, Progress& progress) {
+  BakeResult result;
+  Statistics& statistics = result.statistics;
+  Stopwatch stopwatch(statistics);
+  const auto prepared = prepare(document, options, statistics, stopwatch, result.warnings, progress);
+  Prepared& p = *prepared;
+
+  std::vector<atlas::SeamSample> seams = atlas::findSeams(p.scene, p.atlas, progress);
+  stopwatch.lap("seams");
+
+  asset::Asset& asset = result.asset;
+  asset.generator = std::string("relume ") + version();
+  asset.atlas = tableOf(p.texels);
+  Hasher input;
+  input.add(p.structure);
+  for (const Placement& placement : placements(p.scene)) input.add(placement.world_from_local);
+
+  double tracing_seconds = 0;
+  for (const PreparedLayer& prepared_layer : p.layers) {
+    const LayerContext context{.tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
+    const LayerJob job = prepared_layer.kind->prepare(context, prepared_layer.parameters);
+    input.add(job.solver.key);
+    TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));
+    LayerStatistics numbers{.name = prepared_layer.name};
+    numbers.reused_texels = store.reused();
+    numbers.computed_texels = p.texels.points.size() - store.reused();
+    {
+      Stage stage(progress, prepared_layer.name, numbers.computed_texels);
+      numbers.samples = store.complete(job.solver, progress);
+    }
+    numbers.seconds = stopwatch.lap(prepared_layer.name);
+    statistics.rays += numbers.samples, tracing_seconds += numbers.seconds;
+    obeyMemoryLimit(options.max_memory);
+
+    PointLayer points = job.finish(store.rows());
+    asset::Layer layer = describe(prepared_layer);
+    layer.samples = p.quality.max_samples;  // per texel at most; what was really spent depends on the cache
+    layer.error_estimate = numbers.error_estimate = relativeError(points);
+    for (std::size_t i = 0; i < points.valid.size(); ++i) asset.atlas.valid[i] &= points.valid[i];
+    for (PointPlane& plane : points.planes) {
+      layer.planes.push_back(finishPlane(p.texels, seams, points.valid, std::move(plane)));
+      numbers.raw_bytes += layer.planes.back().values.size() * sizeof(float);
+    }
+    asset.layers.push_back(std::move(layer));
+    statistics.layers.push_back(std::move(numbers));
+    stopwatch.lap(prepared_layer.name + " finish");
+  }
+  asset.input_hash = input.digest().hex();
+  if (!options.cache.empty()) trimStore(options.cache, kStoreLimit);
+  statistics.invalid_texels = static_cast<std::size_t>(std::count(asset.atlas.valid.begin(), asset.atlas.valid.end(), 0));
+  statistics.rays_per_second = tracing_seconds > 0 ? static_cast<double>(statistics.rays) / tracing_seconds : 0;
+
+  p.tracer.reset();
+  p.texels = {};
+  seams = {};
+  {
+    Stage stage(progress, "write", 1);
+    scene::gltf::BakeOutput output = outputOf(p.atlas, asset);
+    for (std::size_t i = 0; i < asset.layers.size(); ++i)
+      for (const auto& plane : output.transfer.at("layers").at(i).at("planes"))
+        statistics.layers[i].bytes += output.views.at(plane.at("bufferView").get<std::size_t>()).size();
+    result.glb = scene::gltf::exportGlb(document, p.scene, output);
+  }
+  stopwatch.lap("export");
+  obeyMemoryLimit(options.max_memory);
+  statistics.peak_rss_bytes = peakResidentBytes();
+  return result;
+}
+
+}  // namespace relume::bake

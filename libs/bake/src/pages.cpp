@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "pages.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relume::bake {
+
+asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::SeamSample> seams, std::span<const std::uint8_t> valid,
+                         PointPlane plane) {
+  asset::Plane out;
+  out.name = plane.name;
+  out.channels = plane.channels;
+  out.storage = asset::Storage::kFloat16;
+  std::vector<std::uint8_t> covered;
+  atlas::scatter(texels, plane.values, plane.channels, valid, out.values, covered);
+  plane.values = {};
+  atlas::dilate(texels.width, texels.height, texels.pages, plane.channels, out.values, std::move(covered), &texels);
+  if (!plane.direction) atlas::stitchSeams(seams, plane.channels, out.values);  // a bent normal may turn at a crease
+  if (plane.unit_interval)
+    for (float& v : out.values) v = std::clamp(v, 0.0f, 1.0f);
+  if (plane.direction) {
+    for (std::size_t i = 0; i + 2 < out.values.size(); i += 3) {
+      Vec3 d(out.values[i], out.values[i + 1], out.values[i + 2]);
+      const float length = glm::length(d);
+      d = length > 1e-6f ? d / length : Vec3(0, 1, 0);
+      out.values[i] = d.x, out.values[i + 1] = d.y, out.values[i + 2] = d.z;
+    }
+  }
+  return out;
+}
+
+}  // namespace relume::bake
