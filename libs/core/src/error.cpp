@@ -7,35 +7,59 @@ namespace relume {
 
 int exitStatus(ErrorCode code) {
   switch (code) {
-    case ErrorCode::kUsage: return 2;
-    case ErrorCode::kCannotWrite: return 3;
-    case ErrorCode::kOutOfMemory: return 4;
-    case ErrorCode::kInterrupted: return 130;
-    default: return 1;
+    case ErrorCode::kUsage:
+      return 2;
+    case ErrorCode::kCannotWrite:
+      return 3;
+    case ErrorCode::kOutOfMemory:
+      return 4;
+    case ErrorCode::kInterrupted:
+      return 130;
+    default:
+      return 1;
   }
 }
 
 const char* name(ErrorCode code) {
   switch (code) {
-    case ErrorCode::kFileNotFound: return "file-not-found";
-    case ErrorCode::kFileUnreadable: return "file-unreadable";
-    case ErrorCode::kNotGltf: return "not-gltf";
-    case ErrorCode::kTruncated: return "truncated";
-    case ErrorCode::kInvalidJson: return "invalid-json";
-    case ErrorCode::kUnsupported: return "unsupported";
-    case ErrorCode::kInvalidReference: return "invalid-reference";
-    case ErrorCode::kOutOfBounds: return "out-of-bounds";
-    case ErrorCode::kInvalidValue: return "invalid-value";
-    case ErrorCode::kCyclicNodes: return "cyclic-nodes";
-    case ErrorCode::kEmptyScene: return "empty-scene";
-    case ErrorCode::kCorruptAsset: return "corrupt-asset";
-    case ErrorCode::kStale: return "stale";
-    case ErrorCode::kNoSuchLayer: return "no-such-layer";
-    case ErrorCode::kMismatch: return "mismatch";
-    case ErrorCode::kUsage: return "usage";
-    case ErrorCode::kCannotWrite: return "cannot-write";
-    case ErrorCode::kOutOfMemory: return "out-of-memory";
-    case ErrorCode::kInterrupted: return "interrupted";
+    case ErrorCode::kFileNotFound:
+      return "file-not-found";
+    case ErrorCode::kFileUnreadable:
+      return "file-unreadable";
+    case ErrorCode::kNotGltf:
+      return "not-gltf";
+    case ErrorCode::kTruncated:
+      return "truncated";
+    case ErrorCode::kInvalidJson:
+      return "invalid-json";
+    case ErrorCode::kUnsupported:
+      return "unsupported";
+    case ErrorCode::kInvalidReference:
+      return "invalid-reference";
+    case ErrorCode::kOutOfBounds:
+      return "out-of-bounds";
+    case ErrorCode::kInvalidValue:
+      return "invalid-value";
+    case ErrorCode::kCyclicNodes:
+      return "cyclic-nodes";
+    case ErrorCode::kEmptyScene:
+      return "empty-scene";
+    case ErrorCode::kCorruptAsset:
+      return "corrupt-asset";
+    case ErrorCode::kStale:
+      return "stale";
+    case ErrorCode::kNoSuchLayer:
+      return "no-such-layer";
+    case ErrorCode::kMismatch:
+      return "mismatch";
+    case ErrorCode::kUsage:
+      return "usage";
+    case ErrorCode::kCannotWrite:
+      return "cannot-write";
+    case ErrorCode::kOutOfMemory:
+      return "out-of-memory";
+    case ErrorCode::kInterrupted:
+      return "interrupted";
   }
   return "unknown";
 }
@@ -60,7 +84,8 @@ Error::Error(ErrorCode code, std::string subject, std::string problem, std::stri
 std::string Warning::text() const { return oneLine(subject, problem, remedy); }
 
 void Progress::throwIfCancelled() const {
-  if (cancelled()) throw Error(ErrorCode::kInterrupted, "", "interrupted", "run the same command again to go on");
+  if (cancelled())
+    throw Error(ErrorCode::kInterrupted, "", "interrupted", "run the same command again to go on");
 }
 
 }  // namespace relume

@@ -36,14 +36,18 @@ using File = std::unique_ptr<std::FILE, Closer>;
 std::vector<std::byte> readFile(const fs::path& path) {
   std::error_code ec;
   if (!fs::exists(path, ec)) throw Error(ErrorCode::kFileNotFound, path.string(), "no such file");
-  if (fs::is_directory(path, ec)) throw Error(ErrorCode::kFileUnreadable, path.string(), "is a folder, not a file");
+  if (fs::is_directory(path, ec))
+    throw Error(ErrorCode::kFileUnreadable, path.string(), "is a folder, not a file");
   File file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw Error(ErrorCode::kFileUnreadable, path.string(), std::string("cannot be read: ") + std::strerror(errno));
+  if (!file)
+    throw Error(ErrorCode::kFileUnreadable, path.string(),
+                std::string("cannot be read: ") + std::strerror(errno));
   std::vector<std::byte> data;
   const auto size = fs::file_size(path, ec);
   if (!ec) data.reserve(static_cast<std::size_t>(size));
   std::byte chunk[1 << 16];
-  for (std::size_t n; (n = std::fread(chunk, 1, sizeof chunk, file.get())) > 0;) data.insert(data.end(), chunk, chunk + n);
+  for (std::size_t n; (n = std::fread(chunk, 1, sizeof chunk, file.get())) > 0;)
+    data.insert(data.end(), chunk, chunk + n);
   if (std::ferror(file.get())) throw Error(ErrorCode::kFileUnreadable, path.string(), "reading failed");
   return data;
 }

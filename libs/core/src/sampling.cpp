@@ -15,8 +15,8 @@ std::uint32_t reverseBits(std::uint32_t x) {
   return __builtin_bswap32(x);
 }
 
-// A permutation in which bit i of the result depends on bits 0..i only: on reversed bits, an Owen scramble. The
-// constants are Vegdahl's improvement of [Burley20] Section 3.2.
+// A permutation in which bit i of the result depends on bits 0..i only: on reversed bits, an Owen scramble.
+// The constants are Vegdahl's improvement of [Burley20] Section 3.2.
 std::uint32_t nestedUniformScrambleReversed(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -26,8 +26,9 @@ std::uint32_t nestedUniformScrambleReversed(std::uint32_t x, std::uint32_t seed)
   return x;
 }
 
-// Sobol's second dimension (primitive polynomial x + 1), as one matrix column per index bit, bits reversed so that the
-// result is ready for the scramble above. The first dimension is the van der Corput sequence: reversed, the index itself.
+// Sobol's second dimension (primitive polynomial x + 1), as one matrix column per index bit, bits reversed so
+// that the result is ready for the scramble above. The first dimension is the van der Corput sequence:
+// reversed, the index itself.
 constexpr std::array<std::uint32_t, 32> secondDimension() {
   std::array<std::uint32_t, 32> columns{};
   std::uint32_t column = 0x80000000u;
@@ -58,10 +59,13 @@ std::uint32_t hashCombine(std::uint32_t a, std::uint32_t b) {
 }
 
 Vec2 sobol2(std::uint32_t index, std::uint32_t stream) {
-  // Shuffle the order within each power-of-two block (an Owen scramble of the index), then scramble each coordinate.
-  const std::uint32_t i = reverseBits(nestedUniformScrambleReversed(reverseBits(index), hashCombine(stream, 0x68bc21ebu)));
+  // Shuffle the order within each power-of-two block (an Owen scramble of the index), then scramble each
+  // coordinate.
+  const std::uint32_t i =
+      reverseBits(nestedUniformScrambleReversed(reverseBits(index), hashCombine(stream, 0x68bc21ebu)));
   std::uint32_t y = 0;
-  for (std::uint32_t rest = i; rest; rest &= rest - 1) y ^= kSecondDimension[static_cast<std::size_t>(__builtin_ctz(rest))];
+  for (std::uint32_t rest = i; rest; rest &= rest - 1)
+    y ^= kSecondDimension[static_cast<std::size_t>(__builtin_ctz(rest))];
   const std::uint32_t x = nestedUniformScrambleReversed(i, hashCombine(stream, 0x02e5be93u));
   y = nestedUniformScrambleReversed(y, hashCombine(stream, 0x967a889bu));
   return {toUnit(reverseBits(x)), toUnit(reverseBits(y))};

@@ -2,4 +2,4 @@
 #include "relume/core/version.h"
 namespace relume {
 const char* version() { return RELUME_VERSION; }
-}
+}  // namespace relume

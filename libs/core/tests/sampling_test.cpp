@@ -12,8 +12,9 @@
 namespace relume {
 namespace {
 
-// A (0, m, 2)-net in base 2: every elementary interval of area 2^-m holds exactly one of 2^m points. Checked for all shapes of
-// the interval, several scrambles and later runs of the sequence; a plain random set fails at once.
+// A (0, m, 2)-net in base 2: every elementary interval of area 2^-m holds exactly one of 2^m points. Checked
+// for all shapes of the interval, several scrambles and later runs of the sequence; a plain random set fails
+// at once.
 TEST(Sobol, EveryAlignedRunIsANet) {
   for (const std::uint32_t stream : {0u, 1u, 0xdeadbeefu}) {
     for (int m = 1; m <= 10; ++m) {
@@ -35,7 +36,8 @@ TEST(Sobol, EveryAlignedRunIsANet) {
   }
 }
 
-// Independent scrambles: the mean over streams of the integral's estimate is unbiased. x^2 y over the square is 1/6.
+// Independent scrambles: the mean over streams of the integral's estimate is unbiased. x^2 y over the square
+// is 1/6.
 TEST(Sobol, ScramblesAreUnbiased) {
   double sum = 0, sum2 = 0;
   const int streams = 4000;
@@ -52,19 +54,23 @@ TEST(Sobol, ScramblesAreUnbiased) {
   EXPECT_LT(standard_error, 0.002);
 }
 
-// Chi-square of the cosine hemisphere over 8 x 16 equal-probability cells (sin^2 theta and phi are uniform under it).
+// Chi-square of the cosine hemisphere over 8 x 16 equal-probability cells (sin^2 theta and phi are uniform
+// under it).
 TEST(Warp, CosineHemispherePassesChiSquare) {
   constexpr int kRings = 8, kSectors = 16;
   std::vector<int> count(kRings * kSectors, 0);
   const int n = 200000;
   for (int i = 0; i < n; ++i) {
     // Independent uniform numbers: chi-square supposes independence, Sobol points would pass too well.
-    const auto a = hashCombine(static_cast<std::uint32_t>(i), 11u), b = hashCombine(static_cast<std::uint32_t>(i), 12u);
-    const Direction d = squareToCosineHemisphere({static_cast<float>(a >> 8) * 0x1p-24f, static_cast<float>(b >> 8) * 0x1p-24f});
+    const auto a = hashCombine(static_cast<std::uint32_t>(i), 11u),
+               b = hashCombine(static_cast<std::uint32_t>(i), 12u);
+    const Direction d = squareToCosineHemisphere(
+        {static_cast<float>(a >> 8) * 0x1p-24f, static_cast<float>(b >> 8) * 0x1p-24f});
     ASSERT_NEAR(glm::length(d), 1.0f, 1e-3f);
     ASSERT_GT(d.z, 0.0f);
     const int ring = std::min(kRings - 1, static_cast<int>((1 - d.z * d.z) * kRings));
-    const int sector = std::min(kSectors - 1, static_cast<int>((std::atan2(d.y, d.x) / (2 * kPi) + 0.5f) * kSectors));
+    const int sector =
+        std::min(kSectors - 1, static_cast<int>((std::atan2(d.y, d.x) / (2 * kPi) + 0.5f) * kSectors));
     ++count[static_cast<std::size_t>(ring * kSectors + sector)];
   }
   const double expected = double(n) / (kRings * kSectors);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Our mistakes: a check that prints both values and the current work item, then aborts. Never for input of others.
+// Our mistakes: a check that prints both values and the current work item, then aborts. Never for input of
+// others.
 #pragma once
 #include <cstdint>
 #include <sstream>
@@ -37,9 +38,10 @@ std::string bothValues(const A& a, const B& b) {
 
 #define RELUME_CHECK(condition) \
   ((condition) ? void(0) : ::relume::checkFailed(__FILE__, __LINE__, #condition, ""))
-#define RELUME_CHECK_OP(a, op, b)  \
-  (((a)op(b)) ? void(0)            \
-              : ::relume::checkFailed(__FILE__, __LINE__, #a " " #op " " #b, ::relume::detail::bothValues(a, b)))
+#define RELUME_CHECK_OP(a, op, b) \
+  (((a)op(b))                     \
+       ? void(0)                  \
+       : ::relume::checkFailed(__FILE__, __LINE__, #a " " #op " " #b, ::relume::detail::bothValues(a, b)))
 #define RELUME_CHECK_EQ(a, b) RELUME_CHECK_OP(a, ==, b)
 #define RELUME_CHECK_LT(a, b) RELUME_CHECK_OP(a, <, b)
 #define RELUME_CHECK_LE(a, b) RELUME_CHECK_OP(a, <=, b)

@@ -11,24 +11,24 @@ enum class ErrorCode {
   // status 1: the input is wrong
   kFileNotFound,
   kFileUnreadable,
-  kNotGltf,          ///< neither JSON nor a binary glTF
-  kTruncated,        ///< shorter than it says
+  kNotGltf,    ///< neither JSON nor a binary glTF
+  kTruncated,  ///< shorter than it says
   kInvalidJson,
-  kUnsupported,      ///< a required extension or a version that is not known here
-  kInvalidReference, ///< an index or a URI that leads nowhere
-  kOutOfBounds,      ///< an accessor or view that leaves its buffer
-  kInvalidValue,     ///< a field of the wrong type or range
+  kUnsupported,       ///< a required extension or a version that is not known here
+  kInvalidReference,  ///< an index or a URI that leads nowhere
+  kOutOfBounds,       ///< an accessor or view that leaves its buffer
+  kInvalidValue,      ///< a field of the wrong type or range
   kCyclicNodes,
-  kEmptyScene,       ///< nothing to work on
-  kCorruptAsset,     ///< a bake whose checksum or layout is wrong
-  kStale,            ///< a bake or a cache made from other input
+  kEmptyScene,    ///< nothing to work on
+  kCorruptAsset,  ///< a bake whose checksum or layout is wrong
+  kStale,         ///< a bake or a cache made from other input
   kNoSuchLayer,
-  kMismatch,         ///< two inputs that do not belong together
+  kMismatch,  ///< two inputs that do not belong together
   // other statuses
-  kUsage,            ///< 2: wrong options
-  kCannotWrite,      ///< 3
-  kOutOfMemory,      ///< 4: or over --max-memory
-  kInterrupted,      ///< 130
+  kUsage,        ///< 2: wrong options
+  kCannotWrite,  ///< 3
+  kOutOfMemory,  ///< 4: or over --max-memory
+  kInterrupted,  ///< 130
 };
 
 /// Exit status of the command line for an error (docs/command-line.md).

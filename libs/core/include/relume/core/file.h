@@ -18,7 +18,8 @@ std::string readTextFile(const std::filesystem::path& path);
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> data);
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
-/// Throws Error kCannotWrite unless a file can be made at `path`: asked before long work, so nothing is baked in vain.
+/// Throws Error kCannotWrite unless a file can be made at `path`: asked before long work, so nothing is baked
+/// in vain.
 void requireWritable(const std::filesystem::path& path);
 
 }  // namespace relume

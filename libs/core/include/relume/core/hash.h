@@ -18,7 +18,8 @@ struct Digest {
   std::string hex() const;  ///< 32 lower-case digits
 };
 
-/// Feeds values in order; strings and vectors include their length, so that ("ab","c") differs from ("a","bc").
+/// Feeds values in order; strings and vectors include their length, so that ("ab","c") differs from
+/// ("a","bc").
 class Hasher {
  public:
   Hasher();
@@ -28,8 +29,7 @@ class Hasher {
 
   Hasher& bytes(const void* data, std::size_t size);
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  Hasher& add(const T& value) { return bytes(&value, sizeof value); }
+  requires std::is_trivially_copyable_v<T> Hasher& add(const T& value) { return bytes(&value, sizeof value); }
   Hasher& add(std::string_view text);
   template <class T>
   Hasher& addAll(std::span<const T> values) {
@@ -38,7 +38,9 @@ class Hasher {
     return bytes(&count, sizeof count).bytes(values.data(), values.size_bytes());
   }
   template <class T>
-  Hasher& addAll(const std::vector<T>& values) { return addAll(std::span<const T>(values)); }
+  Hasher& addAll(const std::vector<T>& values) {
+    return addAll(std::span<const T>(values));
+  }
   Digest digest() const;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light sources that glTF can name (KHR_lights_punctual) and area lights, shared by the baker and the run-time.
+// Light sources that glTF can name (KHR_lights_punctual) and area lights, shared by the baker and the
+// run-time.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,17 +16,18 @@ struct Light {
   Kind kind = Kind::kPoint;
   std::string name;
   Vec3 colour{1.0f};
-  float intensity = 1.0f;          ///< cd (point, spot), lux (directional), radiance W m^-2 sr^-1 (area)
-  float range = kInfinity;         ///< metres; punctual lights fade to zero there
+  float intensity = 1.0f;   ///< cd (point, spot), lux (directional), radiance W m^-2 sr^-1 (area)
+  float range = kInfinity;  ///< metres; punctual lights fade to zero there
   float inner_cone = 0.0f, outer_cone = kPi / 4;  ///< radians from the axis, spot
-  Point position{0.0f};            ///< world
-  Direction direction{0, 0, -1};   ///< world, the way the light travels; area: the side it shines to
-  float area = 0.0f;               ///< m^2, area lights
+  Point position{0.0f};                           ///< world
+  Direction direction{0, 0, -1};  ///< world, the way the light travels; area: the side it shines to
+  float area = 0.0f;              ///< m^2, area lights
 };
 using LightSet = std::vector<Light>;
 
-/// Irradiance at p on a plane that faces the light, no occlusion: I / r^2 with KHR_lights_punctual's range window and cone;
-/// directional: its lux; area: L A cos_l / (r^2 + A / pi), exact on the axis of a disk (multi-scale PRT, section 10).
+/// Irradiance at p on a plane that faces the light, no occlusion: I / r^2 with KHR_lights_punctual's range
+/// window and cone; directional: its lux; area: L A cos_l / (r^2 + A / pi), exact on the axis of a disk
+/// (multi-scale PRT, section 10).
 Irradiance incidentIrradiance(const Light& light, Point p);
 /// Unit direction from p to the light, and how far it is (infinite for directional).
 Direction directionTo(const Light& light, Point p);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light as types: linear RGB, Rec. 709 primaries, radiometric, unit-agnostic (docs/concept.md). An irradiance is always
-// E, never E/pi. A Radiance is not an Irradiance: the compiler refuses to mix them.
+// Light as types: linear RGB, Rec. 709 primaries, radiometric, unit-agnostic (docs/concept.md). An irradiance
+// is always E, never E/pi. A Radiance is not an Irradiance: the compiler refuses to mix them.
 #pragma once
 #include "relume/core/vec.h"
 
@@ -27,7 +27,7 @@ struct Rgb {
 using Radiance = detail::Rgb<struct RadianceTag>;      ///< L, W m^-2 sr^-1
 using Irradiance = detail::Rgb<struct IrradianceTag>;  ///< E, W m^-2
 using Intensity = detail::Rgb<struct IntensityTag>;    ///< I, W sr^-1 (glTF: candela)
-using Albedo = detail::Rgb<struct AlbedoTag>;          ///< diffuse reflectance in [0, 1]; baseColor * (1 - metallic)
+using Albedo = detail::Rgb<struct AlbedoTag>;  ///< diffuse reflectance in [0, 1]; baseColor * (1 - metallic)
 
 /// Radiance that leaves a Lambertian surface: albedo * E / pi.
 inline Radiance reflected(Albedo albedo, Irradiance e) { return Radiance(albedo.rgb * e.rgb * kInvPi); }
