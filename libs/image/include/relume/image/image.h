@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Float images. Row 0 is the top row (glTF's v = 0); channels are interleaved; colour is linear unless a name says srgb.
+// Float images. Row 0 is the top row (glTF's v = 0); channels are interleaved; colour is linear unless a name
+// says srgb.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -16,8 +17,11 @@ struct Image {
 
   Image() = default;
   Image(int w, int h, int c, float value = 0.0f)
-      : width(w), height(h), channels(c),
-        data(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c), value) {}
+      : width(w),
+        height(h),
+        channels(c),
+        data(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c), value) {
+  }
 
   bool empty() const { return data.empty(); }
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Image files. Readers treat every byte as untrusted and throw Error (kFileNotFound, kFileUnreadable, kTruncated,
-// kUnsupported); writers replace the file whole or not at all and throw kCannotWrite.
+// Image files. Readers treat every byte as untrusted and throw Error (kFileNotFound, kFileUnreadable,
+// kTruncated, kUnsupported, kInvalidValue); writers replace the file whole or not at all and throw
+// kCannotWrite.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -12,12 +13,15 @@
 
 namespace relume::image {
 
-/// Reads .exr (any channel type), .hdr, .png, .jpg, .webp by content, not by name. 8- and 16-bit files are taken as sRGB and
-/// linearised; an alpha channel stays linear and is the last one (EXR: channels R,G,B[,A] or Y).
+/// Reads .exr (any channel type), .hdr, .png, .jpg, .webp by content, not by name. 8- and 16-bit files are
+/// taken as sRGB and linearised; an alpha channel stays linear and is the last one (EXR: channels R,G,B[,A]
+/// or Y). 1, 3 or 4 channels: grey with alpha becomes red, green, blue and alpha.
 Image readImage(const std::filesystem::path& path);
+/// The same from memory; `subject` names the image in errors.
+Image decodeImage(std::span<const std::byte> file, const std::string& subject);
 
-/// .exr (32-bit float, ZIP, scan lines), .hdr (RGBE) or .png (8 bit; linear values are clamped to [0, 1] and sRGB-encoded)
-/// by the name's ending. 1, 3 or 4 channels. Throws kUsage for another ending.
+/// .exr (32-bit float, ZIP, scan lines), .hdr (RGBE) or .png (8 bit; linear values are clamped to [0, 1] and
+/// sRGB-encoded) by the name's ending. 1, 3 or 4 channels. Throws kUsage for another ending.
 void writeImage(const std::filesystem::path& path, const Image& image);
 
 void writeExr(const std::filesystem::path& path, const Image& image);
