@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Visibility and distance-weighted visibility at texels, by cosine-weighted low-discrepancy rays.
 // Based on:
-//   [RTR] Akenine-Moeller, Haines, Hoffman. Real-Time Rendering, 3rd ed. Section 11.3: k_A (11.8), bent normal (11.10).
-//   [IKSZ03] Iones et al. Fast, Realistic Lighting for Video Games: W (3), rho (2) and (8).
+//   [RTR] Akenine-Moeller, Haines, Hoffman. Real-Time Rendering, 3rd ed. Section 11.3: k_A (11.8), bent
+//   normal (11.10). [IKSZ03] Iones et al. Fast, Realistic Lighting for Video Games: W (3), rho (2) and (8).
 //   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer, section 8: spectral obscurance.
 #pragma once
 #include <cstdint>
@@ -16,18 +16,20 @@
 
 namespace relume::transport {
 
-/// The distance weight rho(L) of obscurance: 0 at L = 0, increasing, concave, 1 beyond the limit and where nothing is hit.
+/// The distance weight rho(L) of obscurance: 0 at L = 0, increasing, concave, 1 beyond the limit and where
+/// nothing is hit.
 struct DistanceWeight {
   enum class Shape : std::uint8_t {
-    kExponential,  ///< 1 - exp(-L/tau) ([IKSZ03] 2); with a finite limit normalised to reach 1 there: (1-e^{-L/tau})/(1-e^{-limit/tau})
+    kExponential,     ///< 1 - exp(-L/tau) ([IKSZ03] 2); with a finite limit normalised to reach 1 there:
+                      ///< (1-e^{-L/tau})/(1-e^{-limit/tau})
     kExponentialCut,  ///< 1 - exp(-L/tau) below the limit, 1 beyond it (a jump)
-    kLinear,       ///< L / limit
-    kSqrt,         ///< sqrt(L / limit)
-    kStep,         ///< 0 below the limit: distance-limited ambient occlusion
+    kLinear,          ///< L / limit
+    kSqrt,            ///< sqrt(L / limit)
+    kStep,            ///< 0 below the limit: distance-limited ambient occlusion
   };
   Shape shape = Shape::kStep;
-  float tau = 1.0f;            ///< metres
-  float limit = kInfinity;     ///< metres: rays stop here
+  float tau = 1.0f;         ///< metres
+  float limit = kInfinity;  ///< metres: rays stop here
 
   float operator()(float distance) const;
 };
@@ -37,26 +39,35 @@ enum class OcclusionKind : std::uint8_t { kScalar, kSpectral };
 struct OcclusionOptions {
   OcclusionKind kind = OcclusionKind::kScalar;
   DistanceWeight weight;
-  bool bent_normal = false;     ///< also the cosine-weighted bent normal of the open directions (hits count by weight)
-  Albedo mean_albedo;           ///< a~ of [USKP09] section 8 (spectral only)
-  std::uint32_t min_samples = 64, max_samples = 256;  ///< rays per texel, powers of two
-  float target_error = 0.0f;    ///< stop a texel when its estimated standard error is below this; 0: always max_samples
+  bool bent_normal =
+      false;           ///< also the cosine-weighted bent normal of the open directions (hits count by weight)
+  Albedo mean_albedo;  ///< a~ of [USKP09] section 8 (spectral only)
+  std::uint32_t min_samples = 64, max_samples = 256;  ///< rays per texel, powers of two up to 65536
+  float target_error =
+      0.0f;  ///< stop a texel when its estimated standard error is below this; 0: always max_samples
   std::uint64_t seed = 1;
 };
 
 /// Per texel, in the order of Texels::points.
 struct OcclusionResult {
-  std::vector<Vec3> value;        ///< k_A or W; grey for scalar kinds (all three equal). Spectral W may exceed 1
-  std::vector<Direction> bent;    ///< unit, world; the shading normal where nothing is open. Empty unless asked for
-  std::vector<float> error;       ///< estimated standard error of the value's mean channel
-  std::vector<float> back_share;  ///< share of rays that met a back face: a texel inside geometry is near 1
+  std::vector<Vec3> value;  ///< k_A or W; grey for scalar kinds (all three equal). Spectral W may exceed 1
+  std::vector<Direction>
+      bent;  ///< unit, world; the shading normal where nothing is open. Empty unless asked for
+  std::vector<float> error;  ///< estimated standard error of the value's mean channel
+  /// Share of rays (those within the limit) that met a back face: a texel inside geometry is near 1. For
+  /// kStep, whose rays do not look for the first hit, estimated from a few, and 0 where less than half of the
+  /// rays are blocked.
+  std::vector<float> back_share;
   std::uint64_t rays = 0;
 };
 
-/// Bits do not depend on the number of threads, nor on which other texels are in the span: random numbers are a function of
-/// (seed, texel). `which`: indices into texels.points; empty means all (results then cover all points; otherwise `which` only).
-OcclusionResult solveOcclusion(const trace::Tracer& tracer, const atlas::Texels& texels, const OcclusionOptions& options,
-                               Progress& progress, std::span<const std::uint32_t> which = {});
+/// Bits do not depend on the number of threads, nor on which other texels are in the span: random numbers are
+/// a function of (seed, texel). `which`: indices into texels.points; empty means all (results then cover all
+/// points; otherwise `which` only). Work is done by blocks of 4 x 4 texels, so a selection costs as much as
+/// the blocks that it touches. Advances `progress` by one for every result; throws Error kInterrupted.
+OcclusionResult solveOcclusion(const trace::Tracer& tracer, const atlas::Texels& texels,
+                               const OcclusionOptions& options, Progress& progress,
+                               std::span<const std::uint32_t> which = {});
 
 /// Area-weighted mean of the diffuse albedo over the texels: the a~ of [USKP09].
 Albedo meanAlbedo(const atlas::Texels& texels);
@@ -65,13 +76,15 @@ Albedo meanAlbedo(const atlas::Texels& texels);
 float correctedStewartLanger(float k, float rho);  ///< k / (1 - rho (1 - k))  ([RTR] 11.13)
 float correctedJimenez(float k, float rho);        ///< cubic fit of multi-bounce AO (Jimenez et al. 2016)
 
-/// Edge-aware smoothing in texel space that never crosses charts or creases. `values`: [points][channels], in place.
+/// Edge-aware smoothing in texel space that never crosses charts or creases. `values`: [points][channels], in
+/// place.
 struct FilterOptions {
-  int radius = 2;                 ///< texels, smaller than the gutter plus the chart
+  int radius = 2;  ///< texels, smaller than the gutter plus the chart
   float normal_power = 32.0f;
-  float error_scale = 3.0f;       ///< values further apart than this many standard errors are not mixed
+  float error_scale = 3.0f;  ///< values further apart than this many standard errors are not mixed
 };
-void filterTexels(const atlas::Texels& texels, std::span<const float> error, std::span<const std::uint8_t> valid, int channels,
-                  std::span<float> values, const FilterOptions& options = {});
+void filterTexels(const atlas::Texels& texels, std::span<const float> error,
+                  std::span<const std::uint8_t> valid, int channels, std::span<float> values,
+                  const FilterOptions& options = {});
 
 }  // namespace relume::transport
