@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The bake inside a .glb: root extension RELUME_transfer (docs/format.md). Read by the run-time library, which has no glTF
-// importer; written through scene::gltf::exportGlb, to which `encode` gives JSON and buffer views.
+// The bake inside a .glb: root extension RELUME_transfer (docs/format.md). Read by the run-time library,
+// which has no glTF importer; written through scene::gltf::exportGlb, to which `encode` gives JSON and buffer
+// views.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -20,40 +22,49 @@ enum class Storage : std::uint8_t { kFloat32, kFloat16, kUnorm8, kUnorm16, kUint
 
 /// A named array of one layer or of the atlas. shape: [count][channels]
 struct Plane {
-  std::string name;                ///< "value", "bent", "position", ...
+  std::string name;  ///< "value", "bent", ...
   int channels = 1;
-  Storage storage = Storage::kFloat16;
-  float lo = 0, hi = 1;            ///< unorm planes: value = lo + q / max * (hi - lo)
-  std::vector<float> values;       ///< decoded
+  Storage storage = Storage::kFloat16;  ///< what the file keeps of `values`; errors in codec/quantize.h;
+                                        ///< kUint32: whole numbers up to 2^24
+  float lo = 0, hi = 1;                 ///< unorm planes: value = lo + q / max * (hi - lo)
+  std::vector<float> values;            ///< finite
 };
 
+/// A number (infinity: no limit), a word or a switch.
 using Parameter = std::variant<double, std::string, bool>;
 
 struct Layer {
-  std::string name;                ///< "ao", "obscurance", "spectral", ... ; a second one of a kind is "ao.2"
-  std::string kind;                ///< registry name
+  std::string name;  ///< "ao", "obscurance", "spectral", ... ; a second one of a kind is "ao.2"
+  std::string kind;  ///< registry name
   std::string emitters, transport, receivers, codec;  ///< the row of the registry
   std::map<std::string, Parameter> parameters;        ///< as baked, defaults filled in
-  std::vector<Plane> planes;       ///< over all texels of all pages, dilated: shape [pages*height*width][channels]
-  double error_estimate = 0;       ///< relative RMS standard error of the layer, as estimated by its solver
-  std::uint64_t samples = 0;       ///< rays or paths spent
+  std::vector<Plane> planes;  ///< over all texels of all pages, dilated: shape [pages*height*width][channels]
+  double error_estimate = 0;  ///< relative RMS standard error of the layer, as estimated by its solver
+  std::uint64_t samples = 0;  ///< rays or paths per texel, at most
+
+  /// Throws Error kMismatch, naming the planes there are.
+  const Plane& plane(std::string_view plane_name) const;
 };
 
-/// Surface data that relighting needs, per covered texel.
+/// Surface data that relighting needs, per covered texel. The file keeps positions to 2^-23 of the largest
+/// extent, normals to 1e-4 rad, albedo to 0.4 %; the rest exactly.
 struct AtlasTable {
   int width = 0, height = 0;
   std::uint32_t pages = 0;
-  std::vector<std::uint32_t> texel;   ///< index into the pages, increasing
-  std::vector<Point> position;        ///< world
-  std::vector<Normal> normal;         ///< world, shading
-  std::vector<Vec3> albedo;           ///< diffuse albedo, linear
-  std::vector<std::uint8_t> valid;    ///< 0: buried in geometry, its values were filled from neighbours
+  std::vector<std::uint32_t>
+      texel;                    ///< (page * height + row) * width + column, increasing; row 0 is the top one
+  std::vector<Point> position;  ///< world
+  std::vector<Normal> normal;   ///< world, shading; unit length
+  std::vector<Vec3> albedo;     ///< diffuse albedo, linear, in [0, 1]
+  std::vector<std::uint8_t> valid;  ///< 0: buried in geometry, its values were filled from neighbours
   std::vector<std::uint32_t> chart;
+
+  std::size_t pageTexels() const;  ///< of all pages: pages * height * width
 };
 
 struct Asset {
-  std::string generator;              ///< "relume 0.1.0"
-  std::string input_hash;             ///< of the geometry and settings that were baked
+  std::string generator;   ///< "relume 0.1.0"
+  std::string input_hash;  ///< of the geometry and settings that were baked
   AtlasTable atlas;
   std::vector<Layer> layers;
 
@@ -67,11 +78,21 @@ struct Encoded {
   std::string json;
   std::vector<std::vector<std::byte>> views;
 };
+/// Throws Error kInvalidValue for a number that its storage cannot hold (infinite, above 65504 in float16,
+/// outside lo..hi).
 Encoded encode(const Asset& asset);
+/// A .glb that carries the bake and no scene: for engines that have the geometry already.
+std::vector<std::byte> encodeGlb(const Asset& asset);
 
-/// Reads the bake out of .glb bytes. Everything is bounds-checked and checksummed. Throws Error kNotGltf, kTruncated,
-/// kCorruptAsset, kUnsupported (a newer version), kNoSuchLayer (the file carries no bake).
-Asset decode(std::span<const std::byte> glb, const std::string& name);
-Asset readAsset(const std::filesystem::path& path);
+struct DecodeLimits {
+  std::uint64_t max_bytes = std::uint64_t{4}
+                            << 30;  ///< of decoded data; a file of a few KB can hold gigabytes of zeros
+};
+
+/// Reads the bake out of .glb bytes. Everything is bounds-checked and checksummed. Throws Error kNotGltf,
+/// kTruncated, kInvalidJson, kCorruptAsset, kUnsupported (a newer version), kNoSuchLayer (the file carries no
+/// bake), kOutOfMemory (over the limit, or the system's). `name` stands in messages.
+Asset decode(std::span<const std::byte> glb, const std::string& name, const DecodeLimits& limits = {});
+Asset readAsset(const std::filesystem::path& path, const DecodeLimits& limits = {});
 
 }  // namespace relume::asset
