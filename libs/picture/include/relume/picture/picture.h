@@ -16,38 +16,47 @@ enum class View : std::uint8_t {
   kObscurance,  ///< ambient light times the obscurance (or spectral) layer times albedo ([IKSZ03] 4)
   kOcclusion,   ///< the layer's value alone, on white surfaces
   kLit,         ///< [IKSZ03] equation 5: ambient and all lights, with ray-traced shadows
-  kAlbedo,
-  kNormal,
-  kBentNormal,
-  kTexels,      ///< checkerboard of the atlas texels over the layer's value
+  kAlbedo,      ///< diffuse albedo; metals are black
+  kNormal,      ///< world-space shading normal n as (n + 1) / 2
+  kBentNormal,  ///< the layer's bent normal, likewise
+  kTexels,      ///< checkerboard of the atlas texels over the layer's value; hue changes every 8 texels
   kCharts,      ///< a colour for each chart
-  kValidity,    ///< invalid (buried) texels in red
+  kValidity,    ///< valid texels grey, invalid (buried) ones red, surfaces without a texel magenta
 };
 const char* name(View view);
 
 struct Viewpoint {
   Mat4 world_from_camera{1.0f};  ///< looks along -z, +y up
   float vertical_fov = 0.8f;     ///< radians
+  float ortho_height = 0.0f;     ///< metres that the picture's height spans; 0: perspective
 };
-/// A viewpoint that looks from eye to target.
+/// A viewpoint that looks from eye to target, +Y up (for a vertical look -Z is up).
 Viewpoint lookAt(Point eye, Point target, float vertical_fov);
-/// The scene's camera of that index, or a framing of the whole scene when it has none: for a closed interior a place inside near a
-/// corner looking across it, otherwise from outside. Throws Error kUsage for an index that is not there.
-Viewpoint defaultViewpoint(const trace::Tracer& tracer, int camera);
+/// Frames a scene without asking its cameras: a closed interior from a place inside looking across it, a box
+/// with an open side from that side, anything else from outside and above with all of it in the picture.
+/// `aspect` is width / height of the picture to come. Deterministic.
+Viewpoint frameScene(const trace::Tracer& tracer, float aspect = 16.0f / 9.0f);
+/// The scene's camera of that index; -1: its first one. Where the scene has no camera, both -1 and 0 frame
+/// the scene. Throws Error kUsage for an index that is not there.
+Viewpoint defaultViewpoint(const trace::Tracer& tracer, int camera, float aspect = 16.0f / 9.0f);
 
 struct PictureOptions {
   int width = 960, height = 540;
-  int samples = 16;              ///< per pixel, stratified, tent filter of one pixel
+  int samples = 16;  ///< per pixel, stratified, tent filter of one pixel's radius
   View view = View::kObscurance;
-  std::string layer;             ///< name of the layer to show; empty: the first that fits the view
-  Irradiance ambient{kPi};       ///< I_A; pi makes an unoccluded white surface radiance 1
+  std::string layer;        ///< name of the layer to show; empty: the first that fits the view
+  Irradiance ambient{kPi};  ///< I_A; pi makes an unoccluded white surface radiance 1
   float beta = 0.1f;
-  LightSet lights;               ///< world space
-  Vec3 background{0.0f};         ///< linear
+  LightSet lights;        ///< world space
+  Vec3 background{0.0f};  ///< linear
 };
 
-/// Linear radiance (or the view's own colours), RGB. `asset` may be null for views that need no bake; otherwise the scene must be
-/// the baked file's own. Throws Error kNoSuchLayer when the view needs a layer that is not there.
+/// Linear radiance (or the view's own colours), RGB. `asset` may be null for views that need no bake
+/// (kAlbedo, kNormal); otherwise the scene must be the baked file's own. Surfaces without a bake (dynamic
+/// instances) have W = 1 and, in kLit, no light but the ambient one. Metals reflect as if diffusely. Bits do
+/// not depend on the number of threads. Throws Error kNoSuchLayer when the view needs a layer or plane that
+/// is not there, kMismatch when scene and asset do not belong together, kUsage for a size or number of
+/// samples out of range.
 image::Image render(const trace::Tracer& tracer, const asset::Asset* asset, const Viewpoint& viewpoint,
                     const PictureOptions& options, Progress& progress);
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Look-ups of a bake at places on surfaces: bilinear inside the page for values, the nearest texel for what
+// cannot be mixed.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "relume/asset/asset.h"
+#include "relume/picture/picture.h"
+#include "relume/scene/scene.h"
+
+namespace relume::picture {
+
+class BakedValues {
+ public:
+  /// Chooses the layer that `view` shows and checks that scene and asset belong together; see render() for
+  /// what is thrown.
+  BakedValues(const scene::Scene& scene, const asset::Asset* asset, View view, const std::string& layer);
+
+  /// Where a surface lies in the atlas: page and place in texels, (0, 0) being the corner of texel (0, 0).
+  struct Place {
+    std::uint32_t page = 0;
+    Vec2 texel{0.0f};
+  };
+  /// Nothing for surfaces without a bake.
+  std::optional<Place> locate(const scene::Hit& hit) const;
+
+  /// The layer's value, grey or RGB; 1 where the view has no value plane.
+  Vec3 value(const Place& place) const;
+  /// World, unit; `fallback` where the bake has none (nothing open).
+  Normal bentNormal(const Place& place, Normal fallback) const;
+  /// Index into the asset's AtlasTable of the texel at that place; nothing when no surface covers it.
+  std::optional<std::uint32_t> tableIndex(const Place& place) const;
+  const asset::AtlasTable& table() const { return asset_->atlas; }
+
+ private:
+  Vec3 bilinear(const asset::Plane& plane, const Place& place) const;
+
+  const scene::Scene& scene_;
+  const asset::Asset* asset_;
+  const asset::Plane* value_ = nullptr;
+  const asset::Plane* bent_ = nullptr;
+};
+
+}  // namespace relume::picture
