@@ -22,7 +22,8 @@ constexpr std::uint64_t kStoreLimit = std::uint64_t{2} << 30;  // bytes kept in 
 asset::AtlasTable tableOf(const atlas::Texels& texels) {
   asset::AtlasTable table{.width = texels.width, .height = texels.height, .pages = texels.pages};
   const std::size_t n = texels.points.size();
-  table.texel.reserve(n), table.position.reserve(n), table.normal.reserve(n), table.albedo.reserve(n), table.chart.reserve(n);
+  table.texel.reserve(n), table.position.reserve(n), table.normal.reserve(n), table.albedo.reserve(n),
+      table.chart.reserve(n);
   table.valid.assign(n, 1);
   for (const atlas::SurfacePoint& p : texels.points) {
     table.texel.push_back(p.texel);
@@ -43,7 +44,8 @@ double relativeError(const PointLayer& layer) {
     if (!layer.valid[i]) continue;
     error2 += static_cast<double>(layer.error[i]) * layer.error[i];
     double mean = 0;
-    for (std::size_t c = 0; c < channels; ++c) mean += value.values[i * channels + c] / static_cast<double>(channels);
+    for (std::size_t c = 0; c < channels; ++c)
+      mean += value.values[i * channels + c] / static_cast<double>(channels);
     value2 += mean * mean;
   }
   return value2 > 0 ? std::sqrt(error2 / value2) : 0;
@@ -57,7 +59,8 @@ std::vector<std::vector<std::byte>> occlusionPages(const asset::Asset& asset) {
   if (!layer) return pages;
   const asset::Plane& plane = layer->planes.front();
   const auto channels = static_cast<std::size_t>(plane.channels);
-  const std::size_t page_texels = static_cast<std::size_t>(asset.atlas.width) * static_cast<std::size_t>(asset.atlas.height);
+  const std::size_t page_texels =
+      static_cast<std::size_t>(asset.atlas.width) * static_cast<std::size_t>(asset.atlas.height);
   for (std::uint32_t page = 0; page < asset.atlas.pages; ++page) {
     image::Image grey(asset.atlas.width, asset.atlas.height, 1);
     for (std::size_t i = 0; i < page_texels; ++i) {
@@ -119,7 +122,8 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
 
   double tracing_seconds = 0;
   for (const PreparedLayer& prepared_layer : p.layers) {
-    const LayerContext context{.tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
+    const LayerContext context{
+        .tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
     const LayerJob job = prepared_layer.kind->prepare(context, prepared_layer.parameters);
     input.add(job.solver.key);
     TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));
@@ -149,8 +153,10 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
   }
   asset.input_hash = input.digest().hex();
   if (!options.cache.empty()) trimStore(options.cache, kStoreLimit);
-  statistics.invalid_texels = static_cast<std::size_t>(std::count(asset.atlas.valid.begin(), asset.atlas.valid.end(), 0));
-  statistics.rays_per_second = tracing_seconds > 0 ? static_cast<double>(statistics.rays) / tracing_seconds : 0;
+  statistics.invalid_texels =
+      static_cast<std::size_t>(std::count(asset.atlas.valid.begin(), asset.atlas.valid.end(), 0));
+  statistics.rays_per_second =
+      tracing_seconds > 0 ? static_cast<double>(statistics.rays) / tracing_seconds : 0;
 
   p.tracer.reset();
   p.texels = {};

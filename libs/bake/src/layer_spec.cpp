@@ -7,7 +7,8 @@ namespace relume::bake {
 
 LayerSpec parseLayerSpec(std::string_view text) {
   const auto malformed = [&](const std::string& why) {
-    return Error(ErrorCode::kUsage, "--layer " + std::string(text), why, "write for example --layer ao:distance=2");
+    return Error(ErrorCode::kUsage, "--layer " + std::string(text), why,
+                 "write for example --layer ao:distance=2");
   };
   const std::size_t colon = text.find(':');
   LayerSpec spec{.kind = std::string(text.substr(0, colon)), .values = {}};

@@ -31,11 +31,14 @@ Correction correctionOf(const Parameters& parameters) {
   const auto found = parameters.find("correction");
   if (found == parameters.end()) return Correction::kNone;
   const std::string& text = std::get<std::string>(found->second);
-  return text == "jimenez" ? Correction::kJimenez : text == "stewart-langer" ? Correction::kStewartLanger : Correction::kNone;
+  return text == "jimenez"          ? Correction::kJimenez
+         : text == "stewart-langer" ? Correction::kStewartLanger
+                                    : Correction::kNone;
 }
 
 float corrected(Correction correction, float k, float albedo) {
-  return correction == Correction::kJimenez ? transport::correctedJimenez(k, albedo) : transport::correctedStewartLanger(k, albedo);
+  return correction == Correction::kJimenez ? transport::correctedJimenez(k, albedo)
+                                            : transport::correctedStewartLanger(k, albedo);
 }
 
 DistanceWeight weightOf(const Parameters& parameters) {
@@ -50,8 +53,8 @@ DistanceWeight weightOf(const Parameters& parameters) {
   return weight;
 }
 
-// The mean albedo enters every spectral value. It is rounded so that the rounding errors of a moved object's areas do not make every
-// texel of the scene stale.
+// The mean albedo enters every spectral value. It is rounded so that the rounding errors of a moved object's
+// areas do not make every texel of the scene stale.
 Albedo roundedMeanAlbedo(const atlas::Texels& texels) {
   return Albedo(glm::round(transport::meanAlbedo(texels).rgb * 1024.0f) / 1024.0f);
 }
@@ -59,17 +62,28 @@ Albedo roundedMeanAlbedo(const atlas::Texels& texels) {
 Digest keyOf(const OcclusionOptions& o, const RowLayout& layout) {
   return Hasher()
       .add("occlusion 1")  // raise when the solver's results change
-      .add(o.kind).add(o.weight.shape).add(o.weight.tau).add(o.weight.limit).add(o.bent_normal).add(o.mean_albedo.rgb)
-      .add(o.min_samples).add(o.max_samples).add(o.target_error).add(o.seed).add(layout.channels)
+      .add(o.kind)
+      .add(o.weight.shape)
+      .add(o.weight.tau)
+      .add(o.weight.limit)
+      .add(o.bent_normal)
+      .add(o.mean_albedo.rgb)
+      .add(o.min_samples)
+      .add(o.max_samples)
+      .add(o.target_error)
+      .add(o.seed)
+      .add(layout.channels)
       .digest();
 }
 
-PointLayer finishRows(const RowLayout& layout, Correction correction, const atlas::Texels& texels, bool filter, std::span<const float> rows) {
+PointLayer finishRows(const RowLayout& layout, Correction correction, const atlas::Texels& texels,
+                      bool filter, std::span<const float> rows) {
   const std::size_t points = texels.points.size(), row = static_cast<std::size_t>(layout.size());
   RELUME_CHECK_EQ(rows.size(), points * row);
   const auto channels = static_cast<std::size_t>(layout.channels);
   PointLayer layer;
-  PointPlane value{.name = "value", .channels = layout.channels, .unit_interval = layout.channels == 1, .values = {}};
+  PointPlane value{
+      .name = "value", .channels = layout.channels, .unit_interval = layout.channels == 1, .values = {}};
   PointPlane bent{.name = "bent", .channels = 3, .direction = true, .values = {}};
   value.values.resize(points * channels);
   if (layout.bent) bent.values.resize(points * 3);
@@ -86,10 +100,12 @@ PointLayer finishRows(const RowLayout& layout, Correction correction, const atla
     if (layout.bent) transport::filterTexels(texels, layer.error, layer.valid, 3, bent.values);
   }
   if (correction != Correction::kNone) {
-    PointPlane rgb{.name = "value", .channels = 3, .unit_interval = true, .values = std::vector<float>(points * 3)};
+    PointPlane rgb{
+        .name = "value", .channels = 3, .unit_interval = true, .values = std::vector<float>(points * 3)};
     for (std::size_t i = 0; i < points; ++i)
       for (int c = 0; c < 3; ++c)
-        rgb.values[i * 3 + static_cast<std::size_t>(c)] = corrected(correction, value.values[i], texels.points[i].albedo.rgb[c]);
+        rgb.values[i * 3 + static_cast<std::size_t>(c)] =
+            corrected(correction, value.values[i], texels.points[i].albedo.rgb[c]);
     value = std::move(rgb);
   }
   layer.planes.push_back(std::move(value));
@@ -97,8 +113,10 @@ PointLayer finishRows(const RowLayout& layout, Correction correction, const atla
   return layer;
 }
 
-LayerJob makeJob(const LayerContext& context, const Parameters& parameters, OcclusionKind kind, const DistanceWeight& weight) {
-  const RowLayout layout{.channels = kind == OcclusionKind::kSpectral ? 3 : 1, .bent = std::get<bool>(parameters.at("bent"))};
+LayerJob makeJob(const LayerContext& context, const Parameters& parameters, OcclusionKind kind,
+                 const DistanceWeight& weight) {
+  const RowLayout layout{.channels = kind == OcclusionKind::kSpectral ? 3 : 1,
+                         .bent = std::get<bool>(parameters.at("bent"))};
   const OcclusionOptions options{
       .kind = kind,
       .weight = weight,
@@ -115,9 +133,11 @@ LayerJob makeJob(const LayerContext& context, const Parameters& parameters, Occl
   job.solver.row = layout.size();
   job.solver.reach = weight.limit;
   job.solver.key = keyOf(options, layout);
-  job.solver.solve = [=, &tracer, &texels](std::span<const std::uint32_t> which, std::span<float> rows, Progress& progress) {
+  job.solver.solve = [=, &tracer, &texels](std::span<const std::uint32_t> which, std::span<float> rows,
+                                           Progress& progress) {
     if (which.empty()) return std::uint64_t{0};
-    const transport::OcclusionResult result = transport::solveOcclusion(tracer, texels, options, progress, which);
+    const transport::OcclusionResult result =
+        transport::solveOcclusion(tracer, texels, options, progress, which);
     const auto row = static_cast<std::size_t>(layout.size());
     for (std::size_t i = 0; i < which.size(); ++i) {
       float* r = rows.data() + i * row;
@@ -130,7 +150,9 @@ LayerJob makeJob(const LayerContext& context, const Parameters& parameters, Occl
   };
   const Correction correction = correctionOf(parameters);
   const bool filter = context.quality.filter;
-  job.finish = [=, &texels](std::span<const float> rows) { return finishRows(layout, correction, texels, filter, rows); };
+  job.finish = [=, &texels](std::span<const float> rows) {
+    return finishRows(layout, correction, texels, filter, rows);
+  };
   return job;
 }
 

@@ -6,8 +6,8 @@
 
 namespace relume::bake {
 
-asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::SeamSample> seams, std::span<const std::uint8_t> valid,
-                         PointPlane plane) {
+asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::SeamSample> seams,
+                         std::span<const std::uint8_t> valid, PointPlane plane) {
   asset::Plane out;
   out.name = plane.name;
   out.channels = plane.channels;
@@ -15,8 +15,11 @@ asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::Sea
   std::vector<std::uint8_t> covered;
   atlas::scatter(texels, plane.values, plane.channels, valid, out.values, covered);
   plane.values = {};
-  atlas::dilate(texels.width, texels.height, texels.pages, plane.channels, out.values, std::move(covered), &texels);
-  if (!plane.direction) atlas::stitchSeams(seams, plane.channels, out.values);  // a bent normal may turn at a crease
+  atlas::dilate(texels.width, texels.height, texels.pages, plane.channels, out.values, covered, &texels);
+  constexpr float kFidelity = 0.1f;
+  if (!plane.direction)
+    atlas::stitchSeams(seams, plane.channels, out.values, kFidelity,
+                       covered);  // a bent normal may turn at a crease
   if (plane.unit_interval)
     for (float& v : out.values) v = std::clamp(v, 0.0f, 1.0f);
   if (plane.direction) {

@@ -10,7 +10,7 @@
 namespace relume::bake {
 
 /// shape of the result: [pages * height * width][channels]
-asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::SeamSample> seams, std::span<const std::uint8_t> valid,
-                         PointPlane plane);
+asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::SeamSample> seams,
+                         std::span<const std::uint8_t> valid, PointPlane plane);
 
 }  // namespace relume::bake

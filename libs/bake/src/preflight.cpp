@@ -36,17 +36,22 @@ Preflight preflight(const scene::gltf::Document& document, const BakeOptions& op
   unlimited.max_memory = 0;
   const auto prepared = prepare(document, unlimited, statistics, stopwatch, result.warnings, progress);
   const Prepared& p = *prepared;
-  for (const scene::Instance& instance : p.scene.instances) ++(instance.dynamic ? result.dynamic_instances : result.static_instances);
-  result.triangles = statistics.triangles, result.texels = statistics.texels, result.lights = p.scene.lights.size();
+  for (const scene::Instance& instance : p.scene.instances)
+    ++(instance.dynamic ? result.dynamic_instances : result.static_instances);
+  result.triangles = statistics.triangles, result.texels = statistics.texels,
+  result.lights = p.scene.lights.size();
   result.scene_diagonal = p.scene.bounds().diagonal();
-  result.atlas_width = p.atlas.width, result.atlas_height = p.atlas.height, result.atlas_pages = p.atlas.pages;
+  result.atlas_width = p.atlas.width, result.atlas_height = p.atlas.height,
+  result.atlas_pages = p.atlas.pages;
   result.atlas = p.atlas.statistics;
   for (const StageTime& stage : statistics.stages) result.forecast_seconds += stage.seconds;
   for (const PreparedLayer& layer : p.layers) {
-    const LayerContext context{.tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
+    const LayerContext context{
+        .tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
     const LayerJob job = layer.kind->prepare(context, layer.parameters);
     const TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));
-    Preflight::Layer plan{.name = layer.name, .parameters = layer.parameters, .reusable_texels = store.reused()};
+    Preflight::Layer plan{
+        .name = layer.name, .parameters = layer.parameters, .reusable_texels = store.reused()};
     plan.stale_because = store.staleBecause();
     plan.forecast_seconds = forecastSeconds(job.solver, store.pending());
     result.forecast_seconds += plan.forecast_seconds;

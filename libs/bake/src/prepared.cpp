@@ -16,7 +16,8 @@ namespace {
 QualitySettings qualityOf(const BakeOptions& options) {
   QualitySettings quality = settings(options.quality);
   if (options.samples > 0) {
-    // Exactly so many rays: a measured curve needs a known count, so nothing stops early and nothing is smoothed but by the preset.
+    // Exactly so many rays: a measured curve needs a known count, so nothing stops early and nothing is
+    // smoothed but by the preset.
     quality.max_samples = std::bit_ceil(options.samples);
     quality.min_samples = quality.max_samples;
     quality.target_error = 0;
@@ -26,8 +27,10 @@ QualitySettings qualityOf(const BakeOptions& options) {
 
 void warnOfScale(const scene::Scene& scene, float diagonal, Warnings& warnings) {
   if (diagonal >= 2.0f && diagonal <= 400.0f) return;
-  warnings.push_back({scene.name, fmt::format("the scene is {:.3g} metres across, which suggests another unit than the metre", diagonal),
-                      "distances left to themselves follow the scene's size; give distance= to choose"});
+  warnings.push_back(
+      {scene.name,
+       fmt::format("the scene is {:.3g} metres across, which suggests another unit than the metre", diagonal),
+       "distances left to themselves follow the scene's size; give distance= to choose"});
 }
 
 std::vector<PreparedLayer> resolveLayers(const BakeOptions& options, float diagonal) {
@@ -48,8 +51,9 @@ std::vector<PreparedLayer> resolveLayers(const BakeOptions& options, float diago
 
 }  // namespace
 
-std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const BakeOptions& options, Statistics& statistics,
-                                  Stopwatch& stopwatch, Warnings& warnings, Progress& progress) {
+std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const BakeOptions& options,
+                                  Statistics& statistics, Stopwatch& stopwatch, Warnings& warnings,
+                                  Progress& progress) {
   auto p = std::make_unique<Prepared>();
   p->quality = qualityOf(options);
   for (const LayerSpec& spec : options.layers) find(spec.kind);  // wrong names fail before any work
@@ -58,8 +62,9 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
     p->scene = scene::gltf::import(document, warnings);
   }
   if (p->scene.triangleCount() == 0)
-    throw Error(ErrorCode::kEmptyScene, p->scene.name, "there is no static triangle to bake",
-                "animated, skinned and marked nodes are left alone; extras.relume.static on a node includes it");
+    throw Error(
+        ErrorCode::kEmptyScene, p->scene.name, "there is no static triangle to bake",
+        "animated, skinned and marked nodes are left alone; extras.relume.static on a node includes it");
   const float diagonal = p->scene.bounds().diagonal();
   p->layers = resolveLayers(options, diagonal);
   warnOfScale(p->scene, diagonal, warnings);
@@ -71,7 +76,8 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
 
   p->texels = atlas::rasterize(p->scene, p->atlas, progress);
   if (p->texels.points.empty())
-    throw Error(ErrorCode::kEmptyScene, p->scene.name, "no triangle has an area", "check the scale of the nodes and the positions");
+    throw Error(ErrorCode::kEmptyScene, p->scene.name, "no triangle has an area",
+                "check the scale of the nodes and the positions");
   stopwatch.lap("texels");
   obeyMemoryLimit(options.max_memory);
 
@@ -84,13 +90,15 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
 
   statistics.triangles = p->scene.triangleCount();
   statistics.texels = p->texels.points.size();
-  statistics.atlas_width = p->atlas.width, statistics.atlas_height = p->atlas.height, statistics.atlas_pages = p->atlas.pages;
+  statistics.atlas_width = p->atlas.width, statistics.atlas_height = p->atlas.height,
+  statistics.atlas_pages = p->atlas.pages;
   statistics.atlas = p->atlas.statistics;
 
   const std::uint64_t needed = currentResidentBytes() + forecastBytes(*p);
   if (options.max_memory && needed > options.max_memory)
     throw Error(ErrorCode::kOutOfMemory, p->scene.name,
-                fmt::format("the bake needs about {} and --max-memory allows {}", formatSize(needed), formatSize(options.max_memory)),
+                fmt::format("the bake needs about {} and --max-memory allows {}", formatSize(needed),
+                            formatSize(options.max_memory)),
                 "use a smaller --atlas-size or a lower --texel-density");
   return p;
 }
@@ -103,7 +111,8 @@ std::uint64_t forecastBytes(const Prepared& p) {
     const bool has_bent = bent != layer.parameters.end() && std::get<bool>(bent->second);
     const std::uint64_t channels = (rgb ? 3 : 1) + (has_bent ? 3 : 0);
     // Rows of the solver and of the finished layer, then a page-sized plane with its copy for the encoder.
-    most = std::max(most, p.texels.points.size() * (channels + 2) * 4 * 3 + p.atlas.texels() * channels * 4 * 2);
+    most =
+        std::max(most, p.texels.points.size() * (channels + 2) * 4 * 3 + p.atlas.texels() * channels * 4 * 2);
   }
   const std::uint64_t atlas_table = p.texels.points.size() * 48;
   return most + atlas_table;
@@ -113,7 +122,8 @@ void obeyMemoryLimit(std::uint64_t limit) {
   if (!limit) return;
   const std::uint64_t used = currentResidentBytes();
   if (used > limit)
-    throw Error(ErrorCode::kOutOfMemory, "", fmt::format("{} are in use and --max-memory allows {}", formatSize(used), formatSize(limit)),
+    throw Error(ErrorCode::kOutOfMemory, "",
+                fmt::format("{} are in use and --max-memory allows {}", formatSize(used), formatSize(limit)),
                 "use a smaller --atlas-size, a lower --texel-density or smaller textures");
 }
 

@@ -30,8 +30,9 @@ struct Prepared {
 
 /// Imports, checks, makes the atlas, its texels and the acceleration structure. Throws as `bake` does.
 /// On the heap: the tracer refers to the scene.
-std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const BakeOptions& options, Statistics& statistics,
-                                  Stopwatch& stopwatch, Warnings& warnings, Progress& progress);
+std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const BakeOptions& options,
+                                  Statistics& statistics, Stopwatch& stopwatch, Warnings& warnings,
+                                  Progress& progress);
 
 /// Peak memory that the rest of the bake is expected to need, bytes, beyond what is in use now.
 std::uint64_t forecastBytes(const Prepared& prepared);

@@ -27,7 +27,8 @@ QualitySettings settings(Quality quality) { return row(quality).settings; }
 Quality parseQuality(std::string_view text) {
   for (std::size_t i = 0; i < kRows.size(); ++i)
     if (text == kRows[i].name) return static_cast<Quality>(i);
-  throw Error(ErrorCode::kUsage, "--quality " + std::string(text), "is not a quality", "use draft, medium, high or final");
+  throw Error(ErrorCode::kUsage, "--quality " + std::string(text), "is not a quality",
+              "use draft, medium, high or final");
 }
 
 }  // namespace relume::bake

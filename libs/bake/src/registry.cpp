@@ -15,12 +15,17 @@ namespace {
 using Type = ParameterSpec::Type;
 
 ParameterSpec distance(const char* help) { return {"distance", Type::kLength, "auto", {}, help}; }
-const ParameterSpec kTau{"tau", Type::kLength, "auto", {}, "metres in which the weight 1-exp(-L/tau) rises; auto: a quarter of distance"};
-const ParameterSpec kShape{"shape",
-                           Type::kChoice,
-                           "exp",
-                           {"exp", "expcut", "linear", "sqrt"},
-                           "how the weight rises with distance; exp reaches 1 at the limit, expcut jumps there"};
+const ParameterSpec kTau{"tau",
+                         Type::kLength,
+                         "auto",
+                         {},
+                         "metres in which the weight 1-exp(-L/tau) rises; auto: a quarter of distance"};
+const ParameterSpec kShape{
+    "shape",
+    Type::kChoice,
+    "exp",
+    {"exp", "expcut", "linear", "sqrt"},
+    "how the weight rises with distance; exp reaches 1 at the limit, expcut jumps there"};
 const ParameterSpec kBent{"bent", Type::kFlag, "false", {}, "also store the bent normal"};
 const ParameterSpec kCorrection{"correction",
                                 Type::kChoice,
@@ -44,7 +49,8 @@ std::vector<LayerKind> makeRegistry() {
        .transport = "distance-weighted visibility",
        .receivers = "texels, scalar",
        .codec = "none",
-       .parameters = {distance("metres at which the weight is 1 and rays end; inf: endless"), kTau, kShape, kBent, kCorrection},
+       .parameters = {distance("metres at which the weight is 1 and rays end; inf: endless"), kTau, kShape,
+                      kBent, kCorrection},
        .prepare = prepareObscurance},
       {.name = "spectral",
        .summary = "spectral obscurance: distance-weighted occlusion with the colour of near surfaces",
@@ -52,7 +58,8 @@ std::vector<LayerKind> makeRegistry() {
        .transport = "distance-weighted visibility, spectral",
        .receivers = "texels, RGB",
        .codec = "none",
-       .parameters = {distance("metres that part near (coloured) from far (open) surfaces"), kTau, kShape, kBent},
+       .parameters = {distance("metres that part near (coloured) from far (open) surfaces"), kTau, kShape,
+                      kBent},
        .prepare = prepareSpectral},
   };
 }
@@ -67,12 +74,14 @@ asset::Parameter parseValue(const ParameterSpec& spec, const std::string& text, 
       if (std::find(spec.choices.begin(), spec.choices.end(), text) != spec.choices.end()) return text;
       throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not known", text),
                   fmt::format("use one of {}", fmt::join(spec.choices, ", ")));
-    case Type::kLength: break;
+    case Type::kLength:
+      break;
   }
   double value = 0;
   const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (ec != std::errc() || end != text.data() + text.size() || !(value > 0))
-    throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not a length above zero", text), "write metres, for example 2.5, or inf");
+    throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not a length above zero", text),
+                "write metres, for example 2.5, or inf");
   return value;
 }
 
@@ -89,17 +98,20 @@ const LayerKind& find(std::string_view kind) {
     if (row.name == kind) return row;
     names.push_back(row.name);
   }
-  throw Error(ErrorCode::kUsage, "--layer " + std::string(kind), "no such layer", fmt::format("there are {}", fmt::join(names, ", ")));
+  throw Error(ErrorCode::kUsage, "--layer " + std::string(kind), "no such layer",
+              fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
 float autoDistance(float scene_diagonal) {
   constexpr float kSmallest = 2.0f, kLargest = 400.0f;  // metres; outside, the unit is hardly the metre
-  return scene_diagonal < kSmallest || scene_diagonal > kLargest ? scene_diagonal / 8 : std::min(4.0f, scene_diagonal / 4);
+  return scene_diagonal < kSmallest || scene_diagonal > kLargest ? scene_diagonal / 8
+                                                                 : std::min(4.0f, scene_diagonal / 4);
 }
 
 Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_diagonal) {
   for (const auto& [key, value] : spec.values) {
-    if (std::none_of(kind.parameters.begin(), kind.parameters.end(), [&](const ParameterSpec& p) { return p.name == key; })) {
+    if (std::none_of(kind.parameters.begin(), kind.parameters.end(),
+                     [&](const ParameterSpec& p) { return p.name == key; })) {
       std::vector<std::string> names;
       for (const ParameterSpec& p : kind.parameters) names.push_back(p.name);
       throw Error(ErrorCode::kUsage, "--layer " + kind.name, fmt::format("has no parameter '{}'", key),
@@ -115,13 +127,16 @@ Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_dia
   }
   // Automatic lengths, in the order in which they depend on one another.
   result.emplace("distance", static_cast<double>(autoDistance(scene_diagonal)));
-  const bool has_tau = std::any_of(kind.parameters.begin(), kind.parameters.end(), [](const ParameterSpec& p) { return p.name == "tau"; });
+  const bool has_tau = std::any_of(kind.parameters.begin(), kind.parameters.end(),
+                                   [](const ParameterSpec& p) { return p.name == "tau"; });
   if (has_tau) {
     const double limit = std::get<double>(result["distance"]);
-    result.emplace("tau", limit < kInfinity ? limit / 4 : static_cast<double>(autoDistance(scene_diagonal)) / 4);
+    result.emplace("tau",
+                   limit < kInfinity ? limit / 4 : static_cast<double>(autoDistance(scene_diagonal)) / 4);
     const std::string& shape = std::get<std::string>(result["shape"]);
     if (!(limit < kInfinity) && (shape == "linear" || shape == "sqrt"))
-      throw Error(ErrorCode::kUsage, "--layer " + kind.name, fmt::format("shape={} needs a finite distance", shape),
+      throw Error(ErrorCode::kUsage, "--layer " + kind.name,
+                  fmt::format("shape={} needs a finite distance", shape),
                   "give for example distance=4, or use shape=exp");
   }
   return result;

@@ -9,7 +9,8 @@
 
 namespace relume::bake {
 
-/// Meshes, materials and textures of the static instances and their layout in the atlas; not their transforms.
+/// Meshes, materials and textures of the static instances and their layout in the atlas; not their
+/// transforms.
 Digest structureDigest(const scene::Scene& scene, const atlas::Atlas& atlas);
 
 /// Where a static instance stands.

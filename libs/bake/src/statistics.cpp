@@ -9,7 +9,8 @@ std::string toJson(const Statistics& s) {
   using Json = nlohmann::ordered_json;
   Json out;
   out["stages"] = Json::array();
-  for (const StageTime& stage : s.stages) out["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
+  for (const StageTime& stage : s.stages)
+    out["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   out["rays"] = s.rays;
   out["rays_per_second"] = s.rays_per_second;
   out["peak_rss_bytes"] = s.peak_rss_bytes;

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kMagic[8] = {'R', 'E', 'L', 'T', 'E', 'X', 'L', '1'};
-constexpr std::size_t kBlock = 1 << 14;  // texels between chances to stop
+constexpr std::size_t kBlock = 1 << 14;  // texels between chances to save, at least
+constexpr std::uint32_t kBand = 16;  // rows of a page that stay together: solvers work on neighbours at once
 constexpr auto kSaveEvery = std::chrono::seconds(30);
 
 // The file: this header, then placements, flags, rows; closed by a checksum of all before it.
@@ -59,13 +60,16 @@ bool checksumHolds(std::span<const std::byte> file) {
 }
 
 // How far a texel's footprint may reach from its position, with room for rounding.
-float footprintRadius(const atlas::SurfacePoint& p) { return 1.01f * (glm::length(p.dp_dx) + glm::length(p.dp_dy)) + 1e-4f; }
+float footprintRadius(const atlas::SurfacePoint& p) {
+  return 1.01f * (glm::length(p.dp_dx) + glm::length(p.dp_dy)) + 1e-4f;
+}
 
 }  // namespace
 
-TexelStore::TexelStore(const fs::path& folder, const Digest& structure, const TexelSolver& solver, const atlas::Texels& texels,
-                       std::vector<Placement> now)
-    : row_(static_cast<std::size_t>(solver.row)),
+TexelStore::TexelStore(const fs::path& folder, const Digest& structure, const TexelSolver& solver,
+                       const atlas::Texels& texels, std::vector<Placement> now)
+    : texels_(texels),
+      row_(static_cast<std::size_t>(solver.row)),
       now_(std::move(now)),
       done_(texels.points.size(), 0),
       rows_(texels.points.size() * row_, 0.0f) {
@@ -75,23 +79,26 @@ TexelStore::TexelStore(const fs::path& folder, const Digest& structure, const Te
   }
   const Digest key = Hasher().add(std::string_view(version())).add(structure).add(solver.key).digest();
   file_ = folder / (key.hex() + ".texels");
-  if (!load(texels, solver.reach)) {
+  if (!load(solver.reach)) {
     std::fill(done_.begin(), done_.end(), std::uint8_t{0});
     stale_because_ = "nothing baked with this geometry and these settings is in the cache";
   }
   reused_ = static_cast<std::size_t>(std::count(done_.begin(), done_.end(), 1));
 }
 
-bool TexelStore::load(const atlas::Texels& texels, float reach) {
+bool TexelStore::load(float reach) {
   std::error_code ec;
   if (!fs::exists(file_, ec)) return false;
   const std::vector<std::byte> file = readFile(file_);
   Header header{};
   Reader reader(file);
-  if (!checksumHolds(file) || !reader.read(&header, 1) || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) return false;
+  if (!checksumHolds(file) || !reader.read(&header, 1) ||
+      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0)
+    return false;
   if (header.points != done_.size() || header.row != row_ || header.placements != now_.size()) return false;
   std::vector<Placement> before(now_.size());
-  if (!reader.read(before.data(), before.size()) || !reader.read(done_.data(), done_.size()) || !reader.read(rows_.data(), rows_.size()))
+  if (!reader.read(before.data(), before.size()) || !reader.read(done_.data(), done_.size()) ||
+      !reader.read(rows_.data(), rows_.size()))
     return false;
   fs::last_write_time(file_, fs::file_time_type::clock::now(), ec);  // used: trimmed last
 
@@ -110,15 +117,17 @@ bool TexelStore::load(const atlas::Texels& texels, float reach) {
   if (changed.empty()) return true;
   std::size_t touched = 0;
   for (std::size_t i = 0; i < done_.size(); ++i) {
-    const atlas::SurfacePoint& p = texels.points[i];
+    const atlas::SurfacePoint& p = texels_.points[i];
     const float radius = reach + footprintRadius(p);
     const bool own = p.instance < moved.size() && moved[p.instance];
-    if (own || std::any_of(changed.begin(), changed.end(), [&](const Box3& box) { return box.distance(p.position) <= radius; })) {
+    if (own || std::any_of(changed.begin(), changed.end(),
+                           [&](const Box3& box) { return box.distance(p.position) <= radius; })) {
       done_[i] = 0, ++touched;
     }
   }
-  stale_because_ = fmt::format("{} object{} moved; {} of {} texels are within {:.3g} m of the change", changed.size() / 2,
-                               changed.size() == 2 ? "" : "s", touched, done_.size(), reach);
+  stale_because_ =
+      fmt::format("{} object{} moved; {} of {} texels are within {:.3g} m of the change", changed.size() / 2,
+                  changed.size() == 2 ? "" : "s", touched, done_.size(), reach);
   return true;
 }
 
@@ -127,7 +136,8 @@ void TexelStore::save() const {
   Header header{.magic = {}, .points = done_.size(), .row = row_, .placements = now_.size()};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   std::vector<std::byte> out;
-  out.reserve(sizeof header + now_.size() * sizeof(Placement) + done_.size() + rows_.size() * sizeof(float) + 4);
+  out.reserve(sizeof header + now_.size() * sizeof(Placement) + done_.size() + rows_.size() * sizeof(float) +
+              4);
   append(out, &header, 1);
   append(out, now_.data(), now_.size());
   append(out, done_.data(), done_.size());
@@ -150,6 +160,18 @@ std::vector<std::uint32_t> TexelStore::pending() const {
   return result;
 }
 
+std::size_t TexelStore::endOfBlock(std::span<const std::uint32_t> todo, std::size_t first) const {
+  const auto width = static_cast<std::uint32_t>(texels_.width),
+             height = static_cast<std::uint32_t>(texels_.height);
+  const auto band = [&](std::uint32_t point) {
+    const std::uint32_t row = texels_.points[point].texel / width;
+    return std::pair(row / height, row % height / kBand);
+  };
+  std::size_t end = std::min(todo.size(), first + kBlock);
+  while (end < todo.size() && band(todo[end]) == band(todo[end - 1])) ++end;
+  return end;
+}
+
 std::uint64_t TexelStore::complete(const TexelSolver& solver, Progress& progress) {
   const std::vector<std::uint32_t> todo = pending();
   if (todo.empty()) return 0;
@@ -157,8 +179,9 @@ std::uint64_t TexelStore::complete(const TexelSolver& solver, Progress& progress
   std::vector<float> block;
   auto saved = std::chrono::steady_clock::now();
   try {
-    for (std::size_t first = 0; first < todo.size(); first += kBlock) {
-      const auto which = std::span(todo).subspan(first, std::min(kBlock, todo.size() - first));
+    for (std::size_t first = 0; first < todo.size();) {
+      const auto which = std::span(todo).subspan(first, endOfBlock(todo, first) - first);
+      first += which.size();
       block.resize(which.size() * row_);
       rays += solver.solve(which, block, progress);
       for (std::size_t i = 0; i < which.size(); ++i) {

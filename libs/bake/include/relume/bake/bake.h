@@ -19,26 +19,27 @@
 namespace relume::bake {
 
 struct BakeOptions {
-  std::vector<LayerSpec> layers;    ///< empty: obscurance
+  std::vector<LayerSpec> layers;  ///< empty: obscurance
   Quality quality = Quality::kMedium;
-  std::uint32_t samples = 0;        ///< rays per texel, exactly (rounded up to a power of two); 0: as the quality says
+  std::uint32_t samples =
+      0;  ///< rays per texel, exactly (rounded up to a power of two); 0: as the quality says
   atlas::AtlasOptions atlas;
   std::uint64_t seed = 1;
-  std::string isa;                  ///< see trace::TracerOptions
-  std::filesystem::path cache;      ///< folder for finished and interrupted work; empty: none
-  std::uint64_t max_memory = 0;     ///< bytes; 0: no limit
+  std::string isa;               ///< see trace::TracerOptions
+  std::filesystem::path cache;   ///< folder for finished and interrupted work; empty: none
+  std::uint64_t max_memory = 0;  ///< bytes; 0: no limit
 };
 
 struct BakeResult {
-  std::vector<std::byte> glb;       ///< the baked file
-  asset::Asset asset;               ///< what it carries
+  std::vector<std::byte> glb;  ///< the baked file
+  asset::Asset asset;          ///< what it carries
   Statistics statistics;
   Warnings warnings;
 };
 
-/// Bakes. The bits of the result are a function of the document and the options but for cache and max_memory: not of the number
-/// of threads, of interruptions, or of what the cache held.
-/// Throws Error: kEmptyScene, kUsage, kOutOfMemory (forecast or use above max_memory), kInterrupted (finished texels are in the cache).
+/// Bakes. The bits of the result are a function of the document and the options but for cache and max_memory:
+/// not of the number of threads, of interruptions, or of what the cache held. Throws Error: kEmptyScene,
+/// kUsage, kOutOfMemory (forecast or use above max_memory), kInterrupted (finished texels are in the cache).
 BakeResult bake(const scene::gltf::Document& document, const BakeOptions& options, Progress& progress);
 
 /// What a bake would do.
@@ -51,13 +52,13 @@ struct Preflight {
     double forecast_seconds = 0;      ///< of tracing, from a pilot of a few texels
   };
   std::size_t static_instances = 0, dynamic_instances = 0, triangles = 0, texels = 0, lights = 0;
-  float scene_diagonal = 0;           ///< metres
+  float scene_diagonal = 0;  ///< metres
   int atlas_width = 0, atlas_height = 0;
   std::uint32_t atlas_pages = 0;
   atlas::AtlasStatistics atlas;
   std::vector<Layer> layers;
   double forecast_seconds = 0;
-  std::uint64_t forecast_bytes = 0;   ///< peak memory
+  std::uint64_t forecast_bytes = 0;  ///< peak memory
   Warnings warnings;
 };
 Preflight preflight(const scene::gltf::Document& document, const BakeOptions& options, Progress& progress);

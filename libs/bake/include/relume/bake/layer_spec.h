@@ -17,7 +17,8 @@ struct LayerSpec {
   std::map<std::string, std::string> values;  ///< as written
 };
 
-/// Parses "ao:distance=2,bent=true". Throws Error kUsage for a malformed text; names are checked by `resolve`.
+/// Parses "ao:distance=2,bent=true". Throws Error kUsage for a malformed text; names are checked by
+/// `resolve`.
 LayerSpec parseLayerSpec(std::string_view text);
 
 }  // namespace relume::bake

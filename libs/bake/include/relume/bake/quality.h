@@ -13,12 +13,12 @@ Quality parseQuality(std::string_view name);
 
 struct QualitySettings {
   std::uint32_t min_samples = 0, max_samples = 0;  ///< rays per texel, powers of two
-  float target_error = 0;                          ///< standard error at which a texel is finished, of a value in [0, 1]
-  bool filter = false;                             ///< edge-aware smoothing in texel space
+  float target_error = 0;  ///< standard error at which a texel is finished, of a value in [0, 1]
+  bool filter = false;     ///< edge-aware smoothing in texel space
 };
 
-/// draft: a look within seconds; medium: the default, no visible noise; high: for delivery; final: no smoothing anywhere, the
-/// stated error is sampling error alone.
+/// draft: a look within seconds; medium: the default, no visible noise; high: for delivery; final: no
+/// smoothing anywhere, the stated error is sampling error alone.
 QualitySettings settings(Quality quality);
 
 }  // namespace relume::bake

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The registry of layers. A layer is a row: emitters x transport x receivers x codec, its parameters, and how its texels are
-// computed. A new technique is a new row.
+// The registry of layers. A layer is a row: emitters x transport x receivers x codec, its parameters, and how
+// its texels are computed. A new technique is a new row.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -22,7 +22,8 @@ struct ParameterSpec {
   enum class Type : std::uint8_t { kLength, kChoice, kFlag };
   std::string name;
   Type type = Type::kLength;
-  std::string default_value;         ///< as a person would write it; "auto" for a length chosen from the scene's size
+  std::string
+      default_value;  ///< as a person would write it; "auto" for a length chosen from the scene's size
   std::vector<std::string> choices;  ///< kChoice
   std::string help;                  ///< one line, with the unit
 };
@@ -35,13 +36,14 @@ struct LayerContext {
   std::uint64_t seed = 1;
 };
 
-/// A computation in which every texel stands alone: its row of floats depends on nothing farther away than `reach`. That is what makes
-/// it resumable, and what lets a re-bake touch only texels near a change.
+/// A computation in which every texel stands alone: its row of floats depends on nothing farther away than
+/// `reach`. That is what makes it resumable, and what lets a re-bake touch only texels near a change.
 struct TexelSolver {
-  int row = 0;               ///< floats per texel
-  float reach = kInfinity;   ///< metres
-  Digest key;                ///< of every setting that the rows depend on besides the scene
-  /// Fills rows, shape [which][row], of the texels (indices of Texels::points) in `which`; returns rays spent.
+  int row = 0;              ///< floats per texel
+  float reach = kInfinity;  ///< metres
+  Digest key;               ///< of every setting that the rows depend on besides the scene
+  /// Fills rows, shape [which][row], of the texels (indices of Texels::points) in `which`; returns rays
+  /// spent.
   std::function<std::uint64_t(std::span<const std::uint32_t> which, std::span<float> rows, Progress&)> solve;
 };
 
@@ -76,12 +78,12 @@ const std::vector<LayerKind>& registry();
 /// Throws Error kUsage listing the layers there are.
 const LayerKind& find(std::string_view kind);
 
-/// Fills in defaults and checks names, types and ranges. `scene_diagonal`, metres, is what "auto" lengths come from.
-/// Throws Error kUsage naming the parameter and what it may be.
+/// Fills in defaults and checks names, types and ranges. `scene_diagonal`, metres, is what "auto" lengths
+/// come from. Throws Error kUsage naming the parameter and what it may be.
 Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_diagonal);
 
-/// The distance limit that "auto" stands for: 4 m in scenes of human scale, a share of the size in tiny or huge ones (where the
-/// file's unit is hardly the metre).
+/// The distance limit that "auto" stands for: 4 m in scenes of human scale, a share of the size in tiny or
+/// huge ones (where the file's unit is hardly the metre).
 float autoDistance(float scene_diagonal);
 
 }  // namespace relume::bake

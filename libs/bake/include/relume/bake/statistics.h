@@ -19,8 +19,8 @@ struct LayerStatistics {
   std::uint64_t bytes = 0;      ///< stored
   std::uint64_t raw_bytes = 0;  ///< as 32-bit floats
   std::uint64_t samples = 0;    ///< rays
-  double error_estimate = 0;    ///< RMS over texels of the estimated standard error, relative to the RMS value
-  double seconds = 0;           ///< tracing
+  double error_estimate = 0;  ///< RMS over texels of the estimated standard error, relative to the RMS value
+  double seconds = 0;         ///< tracing
   std::size_t reused_texels = 0, computed_texels = 0;
 };
 
