@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#include "scenes.h"
+
+namespace relume::scenes {
+
+std::span<const SceneEntry> allScenes() {
+  static constexpr SceneEntry kScenes[] = {
+      {"cornell", makeCornell}, {"hall", makeHall}, {"temple", makeTemple}, {"car", makeCar}};
+  return kScenes;
+}
+
+}  // namespace relume::scenes

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// The scenes that Relume ships, made by code.
+#pragma once
+#include <span>
+#include <string>
+
+#include "glb_scene.h"
+
+namespace relume::scenes {
+
+inline constexpr int kDefaultDetail = 2;
+inline constexpr int kLargestDetail = 16;
+
+/// The Cornell box with the published coordinates and colours, 1 unit = 1 cm.
+GlbScene makeCornell(int detail);
+/// A castle hall of three rib-vaulted naves.
+GlbScene makeHall(int detail);
+/// A Doric temple.
+GlbScene makeTemple(int detail);
+/// A small automobile on a turntable.
+GlbScene makeCar(int detail);
+
+struct SceneEntry {
+  const char* name;
+  GlbScene (*make)(int detail);
+};
+std::span<const SceneEntry> allScenes();
+
+}  // namespace relume::scenes
