@@ -6,18 +6,20 @@
 # A part sees the headers of what it DEPENDS on and of nothing else, so an arrow that points up does not compile.
 
 add_library(relume_options INTERFACE)
+set_target_properties(relume_options PROPERTIES EXPORT_NAME options)
+install(TARGETS relume_options EXPORT relumeTargets)
 target_compile_features(relume_options INTERFACE cxx_std_20)
 target_compile_options(relume_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wnon-virtual-dtor;-Woverloaded-virtual>
   $<BUILD_INTERFACE:-Wno-missing-field-initializers>  # designated initializers leave the rest at their defaults on purpose
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-maybe-uninitialized;-Wno-restrict>  # GCC 12 false alarms under -O3
-  -ffp-contract=off  # bakes repeat bit for bit
+  $<BUILD_INTERFACE:-ffp-contract=off>  # bakes repeat bit for bit
 )
 if(RELUME_WERROR)
   target_compile_options(relume_options INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
 if(RELUME_ISA AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
-  target_compile_options(relume_options INTERFACE -march=${RELUME_ISA})
+  target_compile_options(relume_options INTERFACE $<BUILD_INTERFACE:-march=${RELUME_ISA}>)
 endif()
 if(RELUME_SANITIZE)
   add_compile_options(-fsanitize=${RELUME_SANITIZE} -fno-omit-frame-pointer)

@@ -64,8 +64,10 @@ std::string text(const bake::Parameters& parameters) {
   for (const auto& [key, value] : parameters) {
     const std::string v = std::visit(
         [](const auto& x) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(x)>, bool>) return std::string(x ? "true" : "false");
-          else return fmt::format("{}", x);
+          if constexpr (std::is_same_v<std::decay_t<decltype(x)>, bool>)
+            return std::string(x ? "true" : "false");
+          else
+            return fmt::format("{}", x);
         },
         value);
     result += (result.empty() ? "" : ", ") + key + "=" + v;
@@ -74,17 +76,21 @@ std::string text(const bake::Parameters& parameters) {
 }
 
 void printPreflight(const bake::Preflight& p, const BakeCommandOptions& options) {
-  fmt::print("{}: {} static triangles in {} objects, {} dynamic objects, {} lights, {:.3g} m across\n", options.input, p.triangles,
-             p.static_instances, p.dynamic_instances, p.lights, p.scene_diagonal);
-  fmt::print("atlas: {} x {}, {} page{}, {:.1f} texels per metre, {} charts, {:.1f} % covered, mean stretch {:.3f}, {} overlapping texels\n",
-             p.atlas_width, p.atlas_height, p.atlas_pages, p.atlas_pages == 1 ? "" : "s", p.atlas.texels_per_metre, p.atlas.charts,
-             p.atlas.coverage * 100, p.atlas.mean_stretch, p.atlas.overlapping_texels);
+  fmt::print("{}: {} static triangles in {} objects, {} dynamic objects, {} lights, {:.3g} m across\n",
+             options.input, p.triangles, p.static_instances, p.dynamic_instances, p.lights, p.scene_diagonal);
+  fmt::print(
+      "atlas: {} x {}, {} page{}, {:.1f} texels per metre, {} charts, {:.1f} % covered, mean stretch {:.3f}, "
+      "{} overlapping texels\n",
+      p.atlas_width, p.atlas_height, p.atlas_pages, p.atlas_pages == 1 ? "" : "s", p.atlas.texels_per_metre,
+      p.atlas.charts, p.atlas.coverage * 100, p.atlas.mean_stretch, p.atlas.overlapping_texels);
   const auto q = bake::settings(bake::parseQuality(options.quality));
-  fmt::print("quality {}: {} to {} rays per texel until the standard error is below {}{}\n", options.quality, q.min_samples, q.max_samples,
-             q.target_error, q.filter ? ", smoothed in texel space" : "");
+  fmt::print("quality {}: {} to {} rays per texel until the standard error is below {}{}\n", options.quality,
+             q.min_samples, q.max_samples, q.target_error, q.filter ? ", smoothed in texel space" : "");
   for (const bake::Preflight::Layer& layer : p.layers) {
-    fmt::print("layer {} ({})\n  {} of {} texels to compute", layer.name, text(layer.parameters), p.texels - layer.reusable_texels, p.texels);
-    if (layer.reusable_texels < p.texels) fmt::print(": {}; about {:.1f} s", layer.stale_because, layer.forecast_seconds);
+    fmt::print("layer {} ({})\n  {} of {} texels to compute", layer.name, text(layer.parameters),
+               p.texels - layer.reusable_texels, p.texels);
+    if (layer.reusable_texels < p.texels)
+      fmt::print(": {}; about {:.1f} s", layer.stale_because, layer.forecast_seconds);
     fmt::print("\n");
   }
   fmt::print("forecast: {:.1f} s, {} of memory\n", p.forecast_seconds, formatSize(p.forecast_bytes));
@@ -93,11 +99,14 @@ void printPreflight(const bake::Preflight& p, const BakeCommandOptions& options)
 void printSummary(const bake::BakeResult& result, const fs::path& output, double seconds) {
   const bake::Statistics& s = result.statistics;
   for (const bake::LayerStatistics& layer : s.layers) {
-    fmt::print("{}: {} texels computed, {} from the cache; estimated error {:.2g} %; {}\n", layer.name, layer.computed_texels,
-               layer.reused_texels, layer.error_estimate * 100, formatSize(layer.bytes));
+    fmt::print("{}: {} texels computed, {} from the cache; estimated error {:.2g} %; {}\n", layer.name,
+               layer.computed_texels, layer.reused_texels, layer.error_estimate * 100,
+               formatSize(layer.bytes));
   }
-  fmt::print("{}: {}; atlas {} x {}{}, {} charts, {:.0f} % covered; {:.1f} s", output.string(), formatSize(result.glb.size()), s.atlas_width,
-             s.atlas_height, s.atlas_pages > 1 ? fmt::format(" x {} pages", s.atlas_pages) : "", s.atlas.charts, s.atlas.coverage * 100, seconds);
+  fmt::print("{}: {}; atlas {} x {}{}, {} charts, {:.0f} % covered; {:.1f} s", output.string(),
+             formatSize(result.glb.size()), s.atlas_width, s.atlas_height,
+             s.atlas_pages > 1 ? fmt::format(" x {} pages", s.atlas_pages) : "", s.atlas.charts,
+             s.atlas.coverage * 100, seconds);
   if (s.rays > 0) fmt::print(", {:.1f} million rays a second", s.rays_per_second * 1e-6);
   fmt::print(", {} at peak\n", formatSize(s.peak_rss_bytes));
 }
@@ -105,7 +114,8 @@ void printSummary(const bake::BakeResult& result, const fs::path& output, double
 void bakeScene(const BakeCommandOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const bake::BakeOptions library = toLibrary(options);
-  const fs::path output = options.output.empty() ? beside(options.input, ".baked.glb") : fs::path(options.output);
+  const fs::path output =
+      options.output.empty() ? beside(options.input, ".baked.glb") : fs::path(options.output);
   const ThreadLimit threads(options.threads);
   const auto document = scene::gltf::Document::read(options.input);
   if (options.dry_run) {
@@ -121,8 +131,10 @@ void bakeScene(const BakeCommandOptions& options, Progress& progress) {
   writeFileAtomically(output, result.glb);
   if (!options.stats.empty()) writeFileAtomically(options.stats, bake::toJson(result.statistics));
   if (!options.report.empty()) writeReport(options.report, output, result, progress);
-  printSummary(result, output, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  if (!options.report.empty()) fmt::print("report: {}\n", (fs::path(options.report) / "report.html").string());
+  printSummary(result, output,
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (!options.report.empty())
+    fmt::print("report: {}\n", (fs::path(options.report) / "report.html").string());
 }
 
 std::string layerHelp() {
@@ -141,29 +153,46 @@ std::string layerHelp() {
 
 void addBake(CLI::App& app, Program& program) {
   auto options = std::make_shared<BakeCommandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "bake", "Bakes light transport into a glTF file.\nExample: relume bake castle.glb -o castle.baked.glb --layer ao:distance=2 --quality high");
+  CLI::App* command =
+      app.add_subcommand("bake",
+                         "Bakes light transport into a glTF file.\nExample: relume bake castle.glb -o "
+                         "castle.baked.glb --layer ao:distance=2 --quality high");
   command->add_option("INPUT", options->input, "scene, .gltf or .glb")->required();
-  command->add_option("-o,--output", options->output, "baked .glb; without it, INPUT.baked.glb beside the input");
+  command->add_option("-o,--output", options->output,
+                      "baked .glb; without it, INPUT.baked.glb beside the input");
   command->add_option("--layer", options->layers, layerHelp())->allow_extra_args(false);
   command->add_option("--quality", options->quality, "draft, medium, high or final: the error to reach")
       ->check(CLI::IsMember({"draft", "medium", "high", "final"}))
       ->capture_default_str();
-  command->add_option("--samples", options->samples, "rays per texel, exactly; rounded up to a power of two")->check(CLI::Range(1, 1 << 20));
-  command->add_option("--atlas-size", options->atlas_size, "texels along a page of the atlas; the scene is fitted to one page")
-                   ->check(CLI::Range(16, 16384))
-                   ->capture_default_str();
-  command->add_option("--texel-density", options->texel_density, "texels per metre, on as many pages as it takes")->check(CLI::PositiveNumber);
-  command->add_option("--gutter", options->gutter, "texels between charts")->check(CLI::Range(1, 64))->capture_default_str();
-  command->add_flag("--new-uv", options->new_uv, "make new charts even where the file has a valid TEXCOORD_1");
-  command->add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 4096))->capture_default_str();
+  command->add_option("--samples", options->samples, "rays per texel, exactly; rounded up to a power of two")
+      ->check(CLI::Range(1, 1 << 20));
+  command
+      ->add_option("--atlas-size", options->atlas_size,
+                   "texels along a page of the atlas; the scene is fitted to one page")
+      ->check(CLI::Range(16, 16384))
+      ->capture_default_str();
+  command
+      ->add_option("--texel-density", options->texel_density,
+                   "texels per metre, on as many pages as it takes")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--gutter", options->gutter, "texels between charts")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_flag("--new-uv", options->new_uv,
+                    "make new charts even where the file has a valid TEXCOORD_1");
+  command->add_option("--threads", options->threads, "0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   command->add_option("--seed", options->seed, "of the random numbers")->capture_default_str();
-  auto* cache = command->add_option("--cache", options->cache, "folder for finished and interrupted work; without it, the user's cache folder");
+  auto* cache =
+      command->add_option("--cache", options->cache,
+                          "folder for finished and interrupted work; without it, the user's cache folder");
   command->add_flag("--no-cache", options->no_cache, "neither read nor keep earlier work")->excludes(cache);
   command->add_option("--max-memory", options->max_memory, "refuse to use more, e.g. 2G");
   command->add_option("--isa", options->isa, "instruction set of the rays, for equal bits on a mixed farm")
       ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
-  command->add_flag("--dry-run", options->dry_run, "say what would be baked and what it would cost; bake nothing");
+  command->add_flag("--dry-run", options->dry_run,
+                    "say what would be baked and what it would cost; bake nothing");
   command->add_option("--stats", options->stats, "write statistics as JSON");
   command->add_option("--report", options->report, "folder for a report with pictures");
   command->add_option("--progress", options->progress, "auto: a line on a terminal; json: lines on stderr")

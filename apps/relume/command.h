@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The commands of the program. Each file of a command has one function that declares its options; what it does runs when its
-// subcommand was parsed.
+// The commands of the program. Each file of a command has one function that declares its options; what it
+// does runs when its subcommand was parsed.
 #pragma once
 #include <CLI/CLI.hpp>
 
@@ -14,9 +14,9 @@ namespace relume::app {
 
 /// What the chosen command will do; set by the callback of its subcommand.
 struct Program {
-  std::string command_line;                      ///< as typed, for replay
+  std::string command_line;  ///< as typed, for replay
   std::function<void(Progress&)> run;
-  std::string progress_mode = "auto";            ///< auto | json | none
+  std::string progress_mode = "auto";  ///< auto | json | none
 };
 
 void addBake(CLI::App& app, Program& program);
@@ -29,7 +29,9 @@ void addCompare(CLI::App& app, Program& program);
 /// Options that belong to one command live as long as the program: the callback holds them.
 template <class Options, class Run>
 void onCommand(CLI::App* command, Program& program, std::shared_ptr<Options> options, Run run) {
-  command->callback([&program, options, run] { program.run = [options, run](Progress& progress) { run(*options, progress); }; });
+  command->callback([&program, options, run] {
+    program.run = [options, run](Progress& progress) { run(*options, progress); };
+  });
 }
 
 }  // namespace relume::app

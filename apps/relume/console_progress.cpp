@@ -24,7 +24,8 @@ std::string duration(double seconds) {
   return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
-// Keeps the outermost stage (libraries may begin stages inside a stage) and tells of it at most ten times a second.
+// Keeps the outermost stage (libraries may begin stages inside a stage) and tells of it at most ten times a
+// second.
 class ConsoleProgress : public Progress {
  public:
   void begin(std::string_view stage, std::uint64_t items) override {
@@ -71,8 +72,10 @@ class LineProgress : public ConsoleProgress {
     constexpr int kWidth = 24;
     const int filled = static_cast<int>(fraction * kWidth);
     const std::string remaining = left >= 0.5 && elapsed > 1 ? fmt::format(", {} left", duration(left)) : "";
-    fmt::print(stderr, "\r\033[K  {:<24} [{}{}] {:3.0f} %  {}{}", stage, std::string(static_cast<std::size_t>(filled), '#'),
-               std::string(static_cast<std::size_t>(kWidth - filled), '.'), fraction * 100, duration(elapsed), remaining);
+    fmt::print(stderr, "\r\033[K  {:<24} [{}{}] {:3.0f} %  {}{}", stage,
+               std::string(static_cast<std::size_t>(filled), '#'),
+               std::string(static_cast<std::size_t>(kWidth - filled), '.'), fraction * 100, duration(elapsed),
+               remaining);
     std::fflush(stderr);
   }
   void finish() override {

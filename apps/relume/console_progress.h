@@ -12,8 +12,8 @@
 
 namespace relume::app {
 
-/// `mode`: "auto" (a line when stderr is a terminal, else nothing), "json" (objects {"stage","fraction","elapsed_s","left_s"} on
-/// stderr, one a line, at most ten a second), "none".
+/// `mode`: "auto" (a line when stderr is a terminal, else nothing), "json" (objects
+/// {"stage","fraction","elapsed_s","left_s"} on stderr, one a line, at most ten a second), "none".
 std::unique_ptr<Progress> makeConsoleProgress(const std::string& mode);
 
 }  // namespace relume::app

@@ -18,12 +18,14 @@ struct ExportOptions {
   std::string asset, layer, folder, format = "exr";
 };
 
-// All pages below one another. Always RGB, so that any program finds the channels it expects; directions in PNG are mapped from
+// All pages below one another. Always RGB, so that any program finds the channels it expects; directions in
+// PNG are mapped from
 // [-1, 1] to [0, 1] as in normal maps.
 image::Image toImage(const asset::Asset& asset, const asset::Plane& plane, bool png) {
   image::Image out(asset.atlas.width, asset.atlas.height * static_cast<int>(asset.atlas.pages), 3);
   const auto channels = static_cast<std::size_t>(plane.channels);
-  const bool signed_values = png && std::any_of(plane.values.begin(), plane.values.end(), [](float v) { return v < 0; });
+  const bool signed_values =
+      png && std::any_of(plane.values.begin(), plane.values.end(), [](float v) { return v < 0; });
   for (std::size_t i = 0; i < out.pixels(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const float v = plane.values[i * channels + std::min(c, channels - 1)];
@@ -52,12 +54,19 @@ void exportLayer(const ExportOptions& options, Progress&) {
 
 void addExport(CLI::App& app, Program& program) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand(
-      "export", "The planes of a layer as images; row 0 is v = 0, pages below one another.\nExample: relume export castle.baked.glb --layer obscurance -o maps");
+  CLI::App* command =
+      app.add_subcommand("export",
+                         "The planes of a layer as images; row 0 is v = 0, pages below one "
+                         "another.\nExample: relume export castle.baked.glb --layer obscurance -o maps");
   command->add_option("ASSET", options->asset, "a baked .glb")->required();
   command->add_option("--layer", options->layer, "name of the layer, as relume inspect lists it")->required();
-  command->add_option("-o,--output", options->folder, "folder; DIR/<layer>.exr, or DIR/<layer>-<plane>.exr when there are several")->required();
-  command->add_option("--format", options->format, "exr: 32-bit float; png: 8 bit sRGB; hdr")->check(CLI::IsMember({"exr", "png", "hdr"}))->capture_default_str();
+  command
+      ->add_option("-o,--output", options->folder,
+                   "folder; DIR/<layer>.exr, or DIR/<layer>-<plane>.exr when there are several")
+      ->required();
+  command->add_option("--format", options->format, "exr: 32-bit float; png: 8 bit sRGB; hdr")
+      ->check(CLI::IsMember({"exr", "png", "hdr"}))
+      ->capture_default_str();
   onCommand(command, program, options, exportLayer);
 }
 

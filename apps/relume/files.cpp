@@ -21,7 +21,8 @@ std::unique_ptr<Opened> open(const std::filesystem::path& path) {
   opened->scene = scene::gltf::import(document, warnings);
   print(warnings);
   const auto extensions = document.json().find("extensions");
-  if (extensions != document.json().end() && extensions->contains("RELUME_transfer")) opened->asset = asset::readAsset(path);
+  if (extensions != document.json().end() && extensions->contains("RELUME_transfer"))
+    opened->asset = asset::readAsset(path);
   return opened;
 }
 
@@ -40,7 +41,8 @@ Vec3 parseTriple(const std::string& text, const std::string& option, bool one_is
   }
   if (values.size() == 1 && one_is_enough) return Vec3(values[0]);
   if (values.size() != 3)
-    throw Error(ErrorCode::kUsage, option + " " + text, "is not three numbers", "write for example " + option + " 1,0.5,2");
+    throw Error(ErrorCode::kUsage, option + " " + text, "is not three numbers",
+                "write for example " + option + " 1,0.5,2");
   return {values[0], values[1], values[2]};
 }
 
@@ -50,8 +52,10 @@ IVec2 parseExtent(const std::string& text, const std::string& option) {
   const auto width = std::from_chars(text.data(), end, size.x);
   const bool has_height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
   const auto height = has_height ? std::from_chars(width.ptr + 1, end, size.y) : width;
-  if (!has_height || height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1 || size.x > 16384 || size.y > 16384)
-    throw Error(ErrorCode::kUsage, option + " " + text, "is not a size", "write for example " + option + " 960x540");
+  if (!has_height || height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1 ||
+      size.x > 16384 || size.y > 16384)
+    throw Error(ErrorCode::kUsage, option + " " + text, "is not a size",
+                "write for example " + option + " 960x540");
   return size;
 }
 

@@ -45,13 +45,14 @@ Json describe(const asset::Asset& asset, std::size_t file_bytes) {
   out["file_bytes"] = file_bytes;
   const asset::AtlasTable& atlas = asset.atlas;
   const double texels = static_cast<double>(atlas.width) * atlas.height * atlas.pages;
-  out["atlas"] = {{"width", atlas.width},
-                  {"height", atlas.height},
-                  {"pages", atlas.pages},
-                  {"covered_texels", atlas.texel.size()},
-                  {"coverage", texels > 0 ? static_cast<double>(atlas.texel.size()) / texels : 0},
-                  {"invalid_texels", std::count(atlas.valid.begin(), atlas.valid.end(), 0)},
-                  {"charts", atlas.chart.empty() ? 0 : *std::max_element(atlas.chart.begin(), atlas.chart.end()) + 1}};
+  out["atlas"] = {
+      {"width", atlas.width},
+      {"height", atlas.height},
+      {"pages", atlas.pages},
+      {"covered_texels", atlas.texel.size()},
+      {"coverage", texels > 0 ? static_cast<double>(atlas.texel.size()) / texels : 0},
+      {"invalid_texels", std::count(atlas.valid.begin(), atlas.valid.end(), 0)},
+      {"charts", atlas.chart.empty() ? 0 : *std::max_element(atlas.chart.begin(), atlas.chart.end()) + 1}};
   out["layers"] = Json::array();
   for (const asset::Layer& layer : asset.layers) {
     Json entry{{"name", layer.name},           {"kind", layer.kind},
@@ -67,21 +68,28 @@ Json describe(const asset::Asset& asset, std::size_t file_bytes) {
 
 void printTable(const std::string& path, const Json& d) {
   const Json& atlas = d["atlas"];
-  fmt::print("{}: {}, baked by {}\n", path, formatSize(d["file_bytes"].get<std::size_t>()), d["generator"].get<std::string>());
-  fmt::print("atlas: {} x {}, {} page{}, {} covered texels ({:.1f} %), {} charts, {} buried texels filled\n\n", atlas["width"].get<int>(),
-             atlas["height"].get<int>(), atlas["pages"].get<int>(), atlas["pages"].get<int>() == 1 ? "" : "s",
-             atlas["covered_texels"].get<std::size_t>(), atlas["coverage"].get<double>() * 100, atlas["charts"].get<std::size_t>(),
-             atlas["invalid_texels"].get<std::size_t>());
+  fmt::print("{}: {}, baked by {}\n", path, formatSize(d["file_bytes"].get<std::size_t>()),
+             d["generator"].get<std::string>());
+  fmt::print(
+      "atlas: {} x {}, {} page{}, {} covered texels ({:.1f} %), {} charts, {} buried texels filled\n\n",
+      atlas["width"].get<int>(), atlas["height"].get<int>(), atlas["pages"].get<int>(),
+      atlas["pages"].get<int>() == 1 ? "" : "s", atlas["covered_texels"].get<std::size_t>(),
+      atlas["coverage"].get<double>() * 100, atlas["charts"].get<std::size_t>(),
+      atlas["invalid_texels"].get<std::size_t>());
   for (const Json& layer : d["layers"]) {
     fmt::print("layer {}\n", layer["name"].get<std::string>());
-    fmt::print("  {} x {} x {} x {}\n", layer["emitters"].get<std::string>(), layer["transport"].get<std::string>(),
-               layer["receivers"].get<std::string>(), layer["codec"].get<std::string>());
-    for (const auto& [key, value] : layer["parameters"].items()) fmt::print("  {:<12} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
-    fmt::print("  {:<12} at most {} rays per texel, estimated relative error {:.2g} %\n", "samples", layer["samples"].get<std::uint64_t>(),
-               layer["error_estimate"].get<double>() * 100);
+    fmt::print("  {} x {} x {} x {}\n", layer["emitters"].get<std::string>(),
+               layer["transport"].get<std::string>(), layer["receivers"].get<std::string>(),
+               layer["codec"].get<std::string>());
+    for (const auto& [key, value] : layer["parameters"].items())
+      fmt::print("  {:<12} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    fmt::print("  {:<12} at most {} rays per texel, estimated relative error {:.2g} %\n", "samples",
+               layer["samples"].get<std::uint64_t>(), layer["error_estimate"].get<double>() * 100);
     for (const Json& plane : layer["planes"])
-      fmt::print("  plane {:<10} {} channel{}, mean {:.4f}, from {:.4f} to {:.4f}\n", plane["name"].get<std::string>(), plane["channels"].get<int>(),
-                 plane["channels"].get<int>() == 1 ? "" : "s", plane["mean"].get<double>(), plane["min"].get<double>(), plane["max"].get<double>());
+      fmt::print("  plane {:<10} {} channel{}, mean {:.4f}, from {:.4f} to {:.4f}\n",
+                 plane["name"].get<std::string>(), plane["channels"].get<int>(),
+                 plane["channels"].get<int>() == 1 ? "" : "s", plane["mean"].get<double>(),
+                 plane["min"].get<double>(), plane["max"].get<double>());
   }
 }
 
@@ -98,7 +106,9 @@ void inspect(const InspectOptions& options, Progress&) {
 
 void addInspect(CLI::App& app, Program& program) {
   auto options = std::make_shared<InspectOptions>();
-  CLI::App* command = app.add_subcommand("inspect", "What a baked file carries: atlas, layers, parameters, sizes.\nExample: relume inspect castle.baked.glb");
+  CLI::App* command = app.add_subcommand("inspect",
+                                         "What a baked file carries: atlas, layers, parameters, "
+                                         "sizes.\nExample: relume inspect castle.baked.glb");
   command->add_option("ASSET", options->asset, "a baked .glb")->required();
   command->add_flag("--json", options->json, "print JSON");
   onCommand(command, program, options, inspect);

@@ -44,9 +44,10 @@ std::string join(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Relume bakes how light travels through a glTF scene, and relights it.\n"
-               "Example: relume bake castle.glb -o castle.baked.glb && relume render castle.baked.glb -o castle.png",
-               "relume"};
+  CLI::App app{
+      "Relume bakes how light travels through a glTF scene, and relights it.\n"
+      "Example: relume bake castle.glb -o castle.baked.glb && relume render castle.baked.glb -o castle.png",
+      "relume"};
   app.set_version_flag("--version", std::string("relume ") + relume::version());
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
@@ -66,7 +67,8 @@ int main(int argc, char** argv) {
     return app.exit(request);  // --help, --version
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
-    fmt::print(stderr, "relume: {}; see relume {}--help\n", error.what(), chosen.empty() ? "" : chosen[0]->get_name() + " ");
+    fmt::print(stderr, "relume: {}; see relume {}--help\n", error.what(),
+               chosen.empty() ? "" : chosen[0]->get_name() + " ");
     return relume::exitStatus(ErrorCode::kUsage);
   } catch (const Error& error) {
     return fail(error.code(), error.what());
@@ -82,7 +84,8 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::kOutOfMemory, "out of memory; use a smaller --atlas-size, or close other programs");
+    return fail(ErrorCode::kOutOfMemory,
+                "out of memory; use a smaller --atlas-size, or close other programs");
   } catch (const std::exception& error) {
     return fail(ErrorCode::kFileUnreadable, error.what());
   }

@@ -36,13 +36,15 @@ void relightAsset(const RelightOptions& options, Progress& progress) {
   requireWritable(options.output);
   const auto opened = open(options.asset);
   if (!opened->asset)
-    throw Error(ErrorCode::kNoSuchLayer, options.asset, "carries no bake", "bake it first: relume bake " + options.asset);
+    throw Error(ErrorCode::kNoSuchLayer, options.asset, "carries no bake",
+                "bake it first: relume bake " + options.asset);
   const asset::Asset& asset = *opened->asset;
   const asset::Layer& layer = asset.layer(options.layer);
   if (layer.kind != "obscurance" && layer.kind != "spectral" && layer.kind != "ao")
     throw Error(ErrorCode::kNoSuchLayer, layer.name, "is not a layer that can be relit");
   const LightSet lights = chooseLights(options.lights, opened->scene);
-  const relight::ObscuranceOptions relighting{.ambient = Irradiance(parseTriple(options.ambient, "--ambient", true)), .beta = options.beta};
+  const relight::ObscuranceOptions relighting{
+      .ambient = Irradiance(parseTriple(options.ambient, "--ambient", true)), .beta = options.beta};
   Stage stage(progress, "relight", 1);
   relight::ObscuranceRelighter relighter(asset, layer);
   if (options.no_shadows) {
@@ -58,14 +60,19 @@ void relightAsset(const RelightOptions& options, Progress& progress) {
 
 void addRelight(CLI::App& app, Program& program) {
   auto options = std::make_shared<RelightOptions>();
-  CLI::App* command = app.add_subcommand(
-      "relight", "Irradiance of every texel under other lights.\nExample: relume relight castle.baked.glb --lights evening.json -o evening.exr");
+  CLI::App* command = app.add_subcommand("relight",
+                                         "Irradiance of every texel under other lights.\nExample: relume "
+                                         "relight castle.baked.glb --lights evening.json -o evening.exr");
   command->add_option("ASSET", options->asset, "a baked .glb")->required();
   command->add_option("--lights", options->lights, "JSON list of lights; without it, the scene's own");
   command->add_option("-o,--output", options->output, "irradiance of the atlas, .exr or .hdr")->required();
   command->add_option("--layer", options->layer, "layer to relight; without it, the first");
-  command->add_option("--ambient", options->ambient, "ambient irradiance, one number or R,G,B")->capture_default_str();
-  command->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  command->add_option("--ambient", options->ambient, "ambient irradiance, one number or R,G,B")
+      ->capture_default_str();
+  command
+      ->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_flag("--no-shadows", options->no_shadows, "let lights shine through");
   onCommand(command, program, options, relightAsset);
 }

@@ -16,8 +16,9 @@ namespace relume::app {
 namespace {
 
 using picture::View;
-constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,    View::kAlbedo,  View::kNormal,
-                               View::kBentNormal, View::kTexels,    View::kCharts, View::kValidity};
+constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,
+                               View::kAlbedo,     View::kNormal,    View::kBentNormal,
+                               View::kTexels,     View::kCharts,    View::kValidity};
 
 struct RenderOptions {
   std::string input, output, view, layer, lights, ambient, background = "0.05", tone = "filmic";
@@ -43,14 +44,16 @@ picture::Viewpoint viewpointOf(const RenderOptions& options, const trace::Tracer
   if (options.eye.empty() != options.target.empty())
     throw Error(ErrorCode::kUsage, "--eye and --target", "belong together", "give both, or --camera");
   if (options.eye.empty()) return picture::defaultViewpoint(tracer, options.camera);
-  const Point eye = parseTriple(options.eye, "--eye", false), target = parseTriple(options.target, "--target", false);
+  const Point eye = parseTriple(options.eye, "--eye", false),
+              target = parseTriple(options.target, "--target", false);
   if (eye == target) throw Error(ErrorCode::kUsage, "--eye and --target", "are the same point");
   return picture::lookAt(eye, target, glm::radians(options.fov_deg));
 }
 
 bool isData(View view) {
-  return view == View::kNormal || view == View::kBentNormal || view == View::kCharts || view == View::kTexels || view == View::kValidity ||
-         view == View::kOcclusion || view == View::kAlbedo;
+  return view == View::kNormal || view == View::kBentNormal || view == View::kCharts ||
+         view == View::kTexels || view == View::kValidity || view == View::kOcclusion ||
+         view == View::kAlbedo;
 }
 
 void renderPicture(const RenderOptions& options, Progress& progress) {
@@ -62,44 +65,70 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   picture.view = viewOf(options.view, *opened);
   picture.layer = options.layer;
   picture.lights = chooseLights(options.lights, opened->scene);
-  // Without a word, an ambient light that shows the obscurance: alone it makes white surfaces white, beside lamps it is faint.
-  const std::string ambient = !options.ambient.empty() ? options.ambient : picture.view == View::kLit ? "0.3" : "3.14159265";
+  // Without a word, an ambient light that shows the obscurance: alone it makes white surfaces white, beside
+  // lamps it is faint.
+  const std::string ambient = !options.ambient.empty()     ? options.ambient
+                              : picture.view == View::kLit ? "0.3"
+                                                           : "3.14159265";
   picture.ambient = Irradiance(parseTriple(ambient, "--ambient", true));
   picture.beta = options.beta;
   picture.background = parseTriple(options.background, "--background", true);
-  const image::Image linear =
-      picture::render(tracer, opened->asset ? &*opened->asset : nullptr, viewpointOf(options, tracer), picture, progress);
+  const image::Image linear = picture::render(tracer, opened->asset ? &*opened->asset : nullptr,
+                                              viewpointOf(options, tracer), picture, progress);
   const bool png = options.output.ends_with(".png");
-  const auto curve = options.tone == "filmic" && !isData(picture.view) ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain;
-  image::writeImage(options.output, png ? image::toneMap(linear, curve, isData(picture.view) ? 0.0f : options.exposure) : linear);
+  const auto curve = options.tone == "filmic" && !isData(picture.view) ? image::ToneCurve::kFilmic
+                                                                       : image::ToneCurve::kPlain;
+  image::writeImage(
+      options.output,
+      png ? image::toneMap(linear, curve, isData(picture.view) ? 0.0f : options.exposure) : linear);
 }
 
 }  // namespace
 
 void addRender(CLI::App& app, Program& program) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = app.add_subcommand(
-      "render", "A picture of a scene or a bake, to .png or linear .exr.\nExample: relume render castle.baked.glb -o castle.png --camera 0 --view obscurance");
+  CLI::App* command =
+      app.add_subcommand("render",
+                         "A picture of a scene or a bake, to .png or linear .exr.\nExample: relume render "
+                         "castle.baked.glb -o castle.png --camera 0 --view obscurance");
   command->add_option("INPUT", options->input, "a scene (.gltf, .glb) or a baked .glb")->required();
-  command->add_option("-o,--output", options->output, "picture: .png (tone-mapped), .exr or .hdr (linear)")->required();
+  command->add_option("-o,--output", options->output, "picture: .png (tone-mapped), .exr or .hdr (linear)")
+      ->required();
   command
       ->add_option("--view", options->view,
-                   "what to show; without it, lit where the bake has lights, obscurance where it has none, albedo without a bake")
+                   "what to show; without it, lit where the bake has lights, obscurance where it has none, "
+                   "albedo without a bake")
       ->check(CLI::IsMember(viewNames()));
   command->add_option("--layer", options->layer, "layer to show; without it, the first that fits");
-  command->add_option("--camera", options->camera, "camera of the file; -1: its first, or one that frames the scene")->capture_default_str();
+  command
+      ->add_option("--camera", options->camera,
+                   "camera of the file; -1: its first, or one that frames the scene")
+      ->capture_default_str();
   command->add_option("--eye", options->eye, "x,y,z of the eye, metres; with --target");
   command->add_option("--target", options->target, "x,y,z to look at, metres");
-  command->add_option("--fov", options->fov_deg, "vertical field of view for --eye, degrees")->check(CLI::Range(1.0, 170.0))->capture_default_str();
+  command->add_option("--fov", options->fov_deg, "vertical field of view for --eye, degrees")
+      ->check(CLI::Range(1.0, 170.0))
+      ->capture_default_str();
   command->add_option("--size", options->size, "width x height")->capture_default_str();
-  command->add_option("--spp", options->spp, "samples per pixel")->check(CLI::Range(1, 65536))->capture_default_str();
+  command->add_option("--spp", options->spp, "samples per pixel")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
   command->add_option("--lights", options->lights, "JSON list of lights; without it, the scene's own");
-  command->add_option("--ambient", options->ambient, "ambient irradiance, one number or R,G,B; without it, pi, or 0.3 beside lights");
-  command->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  command->add_option("--ambient", options->ambient,
+                      "ambient irradiance, one number or R,G,B; without it, pi, or 0.3 beside lights");
+  command
+      ->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_option("--exposure", options->exposure, "stops, for .png")->capture_default_str();
-  command->add_option("--tone", options->tone, "tone curve, for .png")->check(CLI::IsMember({"filmic", "plain"}))->capture_default_str();
-  command->add_option("--background", options->background, "linear, one number or R,G,B")->capture_default_str();
-  command->add_option("--renderer", options->renderer, "cpu: rays")->check(CLI::IsMember({"cpu"}))->capture_default_str();
+  command->add_option("--tone", options->tone, "tone curve, for .png")
+      ->check(CLI::IsMember({"filmic", "plain"}))
+      ->capture_default_str();
+  command->add_option("--background", options->background, "linear, one number or R,G,B")
+      ->capture_default_str();
+  command->add_option("--renderer", options->renderer, "cpu: rays")
+      ->check(CLI::IsMember({"cpu"}))
+      ->capture_default_str();
   onCommand(command, program, options, renderPicture);
 }
 

@@ -40,42 +40,54 @@ th { font-weight: 600; color: var(--soft); } td.n, th.n { text-align: right; fon
 std::string escape(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
   }
   return out;
 }
 
 std::vector<Shot> shotsFor(const asset::Asset& asset, bool has_lights) {
   std::vector<Shot> shots;
-  if (has_lights) shots.push_back({View::kLit, "lit.png", "The scene's lights, with ambient light weighted by the bake"});
+  if (has_lights)
+    shots.push_back({View::kLit, "lit.png", "The scene's lights, with ambient light weighted by the bake"});
   shots.push_back({View::kObscurance, "ambient.png", "Ambient light alone, weighted by the bake"});
   shots.push_back({View::kOcclusion, "layer.png", "The baked layer alone, on white surfaces"});
   shots.push_back({View::kTexels, "texels.png", "Texels of the atlas: even squares mean even density"});
   shots.push_back({View::kCharts, "charts.png", "Charts of the atlas"});
   if (!asset.layers.front().planes.empty() && asset.layers.front().planes.size() > 1)
     shots.push_back({View::kBentNormal, "bent.png", "Bent normals: where the open directions point"});
-  shots.push_back({View::kValidity, "validity.png", "Red texels lie inside other geometry and were filled from their neighbours"});
+  shots.push_back({View::kValidity, "validity.png",
+                   "Red texels lie inside other geometry and were filled from their neighbours"});
   return shots;
 }
 
 std::string figures(const std::vector<Shot>& shots) {
   std::string html = "<div class=\"grid\">\n";
   for (std::size_t i = 0; i < shots.size(); ++i)
-    html += fmt::format("<figure{}><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n", i == 0 ? " class=\"wide\"" : "",
-                        shots[i].file, shots[i].caption, shots[i].caption);
+    html += fmt::format("<figure{}><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+                        i == 0 ? " class=\"wide\"" : "", shots[i].file, shots[i].caption, shots[i].caption);
   return html + "</div>\n";
 }
 
 std::string layerTable(const bake::Statistics& s) {
-  std::string html = "<table><tr><th>Layer</th><th class=n>computed texels</th><th class=n>from the cache</th><th class=n>estimated error</th>"
-                     "<th class=n>stored</th><th class=n>seconds</th></tr>\n";
+  std::string html =
+      "<table><tr><th>Layer</th><th class=n>computed texels</th><th class=n>from the cache</th><th "
+      "class=n>estimated error</th>"
+      "<th class=n>stored</th><th class=n>seconds</th></tr>\n";
   for (const bake::LayerStatistics& l : s.layers)
-    html += fmt::format("<tr><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{:.2f} %</td><td class=n>{}</td><td class=n>{:.2f}</td></tr>\n",
-                        escape(l.name), l.computed_texels, l.reused_texels, l.error_estimate * 100, formatSize(l.bytes), l.seconds);
+    html += fmt::format(
+        "<tr><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{:.2f} %</td><td "
+        "class=n>{}</td><td class=n>{:.2f}</td></tr>\n",
+        escape(l.name), l.computed_texels, l.reused_texels, l.error_estimate * 100, formatSize(l.bytes),
+        l.seconds);
   return html + "</table>\n";
 }
 
@@ -85,20 +97,24 @@ std::string numbersTable(const bake::Statistics& s) {
     html += fmt::format("<tr><td>{}</td><td class=n>{}</td></tr>\n", what, value);
   };
   row("triangles", fmt::format("{}", s.triangles));
-  row("covered texels", fmt::format("{} of {} x {} x {} ({:.1f} %)", s.texels, s.atlas_width, s.atlas_height, s.atlas_pages, s.atlas.coverage * 100));
+  row("covered texels", fmt::format("{} of {} x {} x {} ({:.1f} %)", s.texels, s.atlas_width, s.atlas_height,
+                                    s.atlas_pages, s.atlas.coverage * 100));
   row("charts", fmt::format("{}", s.atlas.charts));
   row("texels per metre", fmt::format("{:.2f}", s.atlas.texels_per_metre));
   row("mean stretch", fmt::format("{:.3f}", s.atlas.mean_stretch));
   row("texels inside geometry", fmt::format("{}", s.invalid_texels));
-  row("rays", fmt::format("{:.2f} million, {:.2f} million a second", static_cast<double>(s.rays) * 1e-6, s.rays_per_second * 1e-6));
+  row("rays", fmt::format("{:.2f} million, {:.2f} million a second", static_cast<double>(s.rays) * 1e-6,
+                          s.rays_per_second * 1e-6));
   row("peak memory", formatSize(s.peak_rss_bytes));
-  for (const bake::StageTime& stage : s.stages) row("time: " + escape(stage.name), fmt::format("{:.3f} s", stage.seconds));
+  for (const bake::StageTime& stage : s.stages)
+    row("time: " + escape(stage.name), fmt::format("{:.3f} s", stage.seconds));
   return html + "</table>\n";
 }
 
 }  // namespace
 
-void writeReport(const fs::path& folder, const fs::path& baked, const bake::BakeResult& result, Progress& progress) {
+void writeReport(const fs::path& folder, const fs::path& baked, const bake::BakeResult& result,
+                 Progress& progress) {
   std::error_code ec;
   fs::create_directories(folder, ec);
   if (ec) throw Error(ErrorCode::kCannotWrite, folder.string(), "cannot make the folder: " + ec.message());
@@ -113,18 +129,22 @@ void writeReport(const fs::path& folder, const fs::path& baked, const bake::Bake
     if (shot.view == View::kLit) options.ambient = Irradiance(0.3f);
     const image::Image linear = picture::render(tracer, &*opened->asset, viewpoint, options, progress);
     const bool light = shot.view == View::kLit || shot.view == View::kObscurance;
-    image::writeImage(folder / shot.file, image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain));
+    image::writeImage(folder / shot.file,
+                      image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain));
   }
-  std::string html = fmt::format("<!doctype html>\n<html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"
-                                 "<title>{0}</title><style>{1}</style>\n<h1>{0}</h1>\n<p class=soft>{2}, {3}</p>\n",
-                                 escape(baked.filename().string()), kStyle, escape(result.asset.generator), formatSize(result.glb.size()));
+  std::string html = fmt::format(
+      "<!doctype html>\n<html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"
+      "<title>{0}</title><style>{1}</style>\n<h1>{0}</h1>\n<p class=soft>{2}, {3}</p>\n",
+      escape(baked.filename().string()), kStyle, escape(result.asset.generator),
+      formatSize(result.glb.size()));
   html += figures(shots);
   if (!result.warnings.empty()) {
     html += "<h2>Warnings</h2>\n<ul class=warn>\n";
     for (const Warning& warning : result.warnings) html += "<li>" + escape(warning.text()) + "</li>\n";
     html += "</ul>\n";
   }
-  html += "<h2>Layers</h2>\n" + layerTable(result.statistics) + "<h2>Numbers</h2>\n" + numbersTable(result.statistics) + "</html>\n";
+  html += "<h2>Layers</h2>\n" + layerTable(result.statistics) + "<h2>Numbers</h2>\n" +
+          numbersTable(result.statistics) + "</html>\n";
   writeFileAtomically(folder / "report.html", html);
   writeFileAtomically(folder / "report.json", bake::toJson(result.statistics));
 }

@@ -9,6 +9,7 @@
 namespace relume::app {
 
 /// Writes report.html, report.json and pictures into `folder`. `baked` is the file that was written.
-void writeReport(const std::filesystem::path& folder, const std::filesystem::path& baked, const bake::BakeResult& result, Progress& progress);
+void writeReport(const std::filesystem::path& folder, const std::filesystem::path& baked,
+                 const bake::BakeResult& result, Progress& progress);
 
 }  // namespace relume::app

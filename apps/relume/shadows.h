@@ -8,7 +8,9 @@
 
 namespace relume::app {
 
-/// Visibility of each light from each covered texel: one ray, or 16 over the disk of an area light. Keeps references.
-relight::VisibilitySource tracedVisibility(const trace::Tracer& tracer, const asset::AtlasTable& atlas, const LightSet& lights);
+/// Visibility of each light from each covered texel: one ray, or 16 over the disk of an area light. Keeps
+/// references.
+relight::VisibilitySource tracedVisibility(const trace::Tracer& tracer, const asset::AtlasTable& atlas,
+                                           const LightSet& lights);
 
 }  // namespace relume::app

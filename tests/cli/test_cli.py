@@ -1,0 +1,328 @@
+"""The program as a person runs it. Usage: test_cli.py RELUME [unittest arguments]"""
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import glb
+
+RELUME = None
+
+
+def relume(*args, expect=0, **more):
+    done = subprocess.run([RELUME, *map(str, args)], capture_output=True, text=True, timeout=300, **more)
+    if done.returncode != expect:
+        raise AssertionError(f"relume {' '.join(map(str, args))}: status {done.returncode}, expected {expect}\n{done.stdout}{done.stderr}")
+    return done
+
+
+def corner_scene(path, box_at=(2.0, 0.0, 2.0)):
+    """A floor and a wall that meet at right angles, and a box that stands on the floor far away from them."""
+    b = glb.Builder()
+    white = b.material([0.8, 0.8, 0.8], name="white", extras={"kept": [1, 2]})
+    red = b.material([0.8, 0.2, 0.1])
+    b.node(b.quads([([-4, 0, -4], [0, 0, 8], [8, 0, 0])], white, "floor"), "floor", extras={"owner": "tests"})
+    b.node(b.quads([([-4, 0, -4], [8, 0, 0], [0, 3, 0])], red, "wall"), "wall")
+    b.node(b.box([-0.25, 0, -0.25], [0.25, 0.5, 0.25], red), "box", translation=list(box_at))
+    b.light("point", 5, (0, 2, 0), name="lamp")
+    return b.write(path)
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="relume_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.scene = corner_scene(self.folder / "corner.glb")
+        self.baked = self.folder / "corner.baked.glb"
+        os.environ["XDG_CACHE_HOME"] = str(self.folder / "cache")
+
+    def bake(self, *args, scene=None, output=None, **more):
+        size = [] if "--atlas-size" in args else ["--atlas-size", 128]
+        return relume("bake", scene or self.scene, "-o", output or self.baked, *size, *args, **more)
+
+
+class Usage(CliTest):
+    def test_every_command_has_help_with_an_example(self):
+        self.assertIn("Example: relume bake", relume("--help").stdout)
+        for command in ("bake", "relight", "render", "inspect", "export", "compare"):
+            self.assertIn(f"Example: relume {command}", relume(command, "--help").stdout, command)
+
+    def assertFails(self, status, *args, says=()):
+        done = relume(*args, expect=status)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertTrue(done.stderr.startswith("relume: "), done.stderr)
+        for text in says:
+            self.assertIn(text, done.stderr)
+        return done
+
+    def test_wrong_usage_is_status_2_and_one_line(self):
+        self.assertFails(2)
+        self.assertFails(2, "bake")
+        self.assertFails(2, "bake", self.scene, "--no-such-flag")
+        self.assertFails(2, "bake", self.scene, "--quality", "best")
+        self.assertFails(2, "bake", self.scene, "--layer", "shiny", says=["shiny", "obscurance"])
+        self.assertFails(2, "bake", self.scene, "--layer", "ao:distence=2", says=["distence", "distance"])
+        self.assertFails(2, "bake", self.scene, "--layer", "ao:distance=-2")
+        self.assertFails(2, "bake", self.scene, "--layer", "obscurance:shape=cubic", says=["linear"])
+        self.assertFails(2, "bake", self.scene, "--layer", "obscurance:shape=linear,distance=inf")
+        self.assertFails(2, "render", self.scene, "-o", self.folder / "a.png", "--size", "big")
+        self.assertFails(2, "render", self.scene, "-o", self.folder / "a.png", "--eye", "1,2,3")
+        self.assertFails(2, "render", self.scene, "-o", self.folder / "a.png", "--camera", "7")
+        self.assertFails(2, "render", self.scene, "-o", self.folder / "a.tga")
+
+    def test_bad_input_is_status_1_and_names_the_file(self):
+        self.assertFails(1, "bake", self.folder / "none.glb", says=["none.glb"])
+        self.assertFails(1, "inspect", self.scene, says=["corner.glb"])
+        broken = self.folder / "broken.glb"
+        broken.write_bytes(pathlib.Path(self.scene).read_bytes()[:-40])
+        self.assertFails(1, "bake", broken, says=["broken.glb"])
+        empty = glb.Builder()
+        empty.node(name="nothing")
+        self.assertFails(1, "bake", empty.write(self.folder / "empty.glb"), says=["empty.glb"])
+        self.assertFails(1, "relight", self.scene, "-o", self.folder / "e.exr", says=["bake"])
+
+    def test_what_cannot_be_written_is_status_3_before_any_work(self):
+        self.assertFails(3, "bake", self.scene, "-o", self.folder / "no" / "where.glb", says=["where.glb"])
+        self.assertFails(3, "render", self.scene, "-o", self.folder / "no" / "a.png")
+
+    def test_memory_limit_is_status_4_and_leaves_no_file(self):
+        self.assertFails(4, "bake", self.scene, "-o", self.baked, "--max-memory", "1M", says=["--max-memory"])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.is_file()), ["corner.glb"])
+
+    def test_quiet_when_piped_and_json_for_tools(self):
+        self.assertEqual(self.bake("--quality", "draft").stderr, "")
+        lines = [json.loads(line) for line in self.bake("--no-cache", "--progress", "json").stderr.splitlines()]
+        self.assertGreater(len(lines), 3)
+        self.assertTrue(all(0 <= line["fraction"] <= 1 and line["stage"] for line in lines))
+
+
+class Bake(CliTest):
+    def test_default_output_is_beside_the_input(self):
+        relume("bake", self.scene, "--quality", "draft", "--atlas-size", 64)
+        self.assertTrue((self.folder / "corner.baked.glb").exists())
+
+    def test_everything_is_kept_and_the_bake_is_wired(self):
+        self.bake("--layer", "ao:distance=2", "--layer", "spectral")
+        before, _ = glb.read_glb(self.scene)
+        after, binary = glb.read_glb(self.baked)
+        self.assertEqual([n.get("name") for n in after["nodes"]], [n.get("name") for n in before["nodes"]])
+        self.assertEqual(after["nodes"][0]["extras"], {"owner": "tests"})
+        self.assertTrue(any(m.get("extras", {}).get("kept") == [1, 2] for m in after["materials"]))
+        self.assertEqual(after["extensions"]["KHR_lights_punctual"], before["extensions"]["KHR_lights_punctual"])
+        self.assertIn("RELUME_transfer", after["extensions"])
+        self.assertNotIn("RELUME_transfer", after.get("extensionsRequired", []))
+        for node in after["nodes"]:
+            if "mesh" not in node:
+                continue
+            for primitive in after["meshes"][node["mesh"]]["primitives"]:
+                uv = glb.read_accessor(after, binary, primitive["attributes"]["TEXCOORD_1"])
+                self.assertTrue(all(0 <= c <= 1 for t in uv for c in t))
+                occlusion = after["materials"][primitive["material"]]["occlusionTexture"]
+                self.assertEqual(occlusion["texCoord"], 1)
+
+    def test_values_against_closed_forms(self):
+        # An endless wall at distance d, occlusion limited to D: open share 1 - (al - sin al cos al) / pi, cos al = d / D.
+        self.bake("--layer", "ao:distance=1", "--samples", 1024, "--quality", "final", "--atlas-size", 256)
+        relume("export", self.baked, "--layer", "ao", "-o", self.folder / "maps")
+        width, height, planes = glb.read_exr(self.folder / "maps" / "ao.exr")
+        after, binary = glb.read_glb(self.baked)
+        floor = after["meshes"][after["nodes"][0]["mesh"]]["primitives"][0]["attributes"]
+        position = glb.read_accessor(after, binary, floor["POSITION"])
+        uv = glb.read_accessor(after, binary, floor["TEXCOORD_1"])
+        # The floor is one affine chart: solve uv = origin + x ex + z ez from three corners.
+        (x0, _, z0), (u0, v0) = position[0], uv[0]
+        rows = [(p[0] - x0, p[2] - z0, t[0] - u0, t[1] - v0) for p, t in zip(position[1:3], uv[1:3])]
+        det = rows[0][0] * rows[1][1] - rows[1][0] * rows[0][1]
+        gradient = [[(rows[0][k] * rows[1][1] - rows[1][k] * rows[0][1]) / det, (rows[0][0] * rows[1][k] - rows[1][0] * rows[0][k]) / det] for k in (2, 3)]
+        checked = 0
+        for step in range(1, 60):
+            d = step * 0.05
+            x, z = -1.0, -4 + d
+            u = u0 + gradient[0][0] * (x - x0) + gradient[0][1] * (z - z0)
+            v = v0 + gradient[1][0] * (x - x0) + gradient[1][1] * (z - z0)
+            value = planes["R"][int(v * height) * width + int(u * width)]
+            if d < 0.15:
+                continue  # a texel there spans a fifth of the slope
+            al = math.acos(d) if d < 1 else 0.0
+            exact = 1 - (al - math.sin(al) * math.cos(al)) / math.pi
+            self.assertAlmostEqual(value, exact, delta=0.03, msg=f"at {d} m from the wall")
+            checked += 1
+        self.assertGreater(checked, 50)
+
+    def test_same_bytes_for_any_number_of_threads_and_any_cache(self):
+        self.bake("--layer", "obscurance", "--layer", "spectral", "--no-cache", "--threads", 1)
+        reference = self.baked.read_bytes()
+        for args in (["--no-cache", "--threads", 2], ["--cache", self.folder / "c"], ["--cache", self.folder / "c"]):
+            self.bake("--layer", "obscurance", "--layer", "spectral", *args)
+            self.assertEqual(self.baked.read_bytes(), reference, args)
+        self.bake("--layer", "obscurance", "--layer", "spectral", "--no-cache", "--seed", 2)
+        self.assertNotEqual(self.baked.read_bytes(), reference, "another seed gives other noise")
+
+    def test_a_moved_object_touches_only_what_is_near(self):
+        cache = self.folder / "c"
+        layers = ["--layer", "obscurance:distance=0.5", "--layer", "spectral:distance=0.5"]
+        self.bake(*layers, "--cache", cache)
+        moved = corner_scene(self.folder / "moved.glb", box_at=(1.0, 0.0, 2.5))
+        stats = self.folder / "stats.json"
+        dry = relume("bake", moved, "--atlas-size", 128, *layers, "--cache", cache, "--dry-run").stdout
+        self.assertIn("1 object moved", dry)
+        self.bake(*layers, "--cache", cache, "--stats", stats, scene=moved)
+        incremental = self.baked.read_bytes()
+        for layer in json.loads(stats.read_text())["layers"]:
+            share = layer["computed_texels"] / (layer["computed_texels"] + layer["reused_texels"])
+            self.assertGreater(layer["reused_texels"], 0)
+            self.assertLess(share, 0.5, "most of the scene is far from the box")
+        self.bake(*layers, "--no-cache", scene=moved)
+        self.assertEqual(self.baked.read_bytes(), incremental, "the partial bake has other bits than the full one")
+
+    def test_interrupted_work_goes_on_to_the_same_bytes(self):
+        args = ["--layer", "obscurance", "--samples", 8192, "--atlas-size", 256, "--quality", "final"]
+        cache = self.folder / "c"
+        process = subprocess.Popen([RELUME, "bake", self.scene, "-o", str(self.baked), *map(str, args), "--cache", str(cache), "--progress", "json"],
+                                   stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        for line in process.stderr:  # until a good part of the texels is done
+            event = json.loads(line)
+            if event["stage"] == "obscurance" and 0.5 < event["fraction"] < 0.9:
+                break
+        process.send_signal(signal.SIGINT)
+        process.stderr.read()
+        self.assertEqual(process.wait(), 130)
+        process.stderr.close()
+        self.assertFalse(self.baked.exists(), "a half-made file was left")
+        stats = self.folder / "stats.json"
+        self.bake(*args, "--cache", cache, "--stats", stats)
+        self.assertGreater(json.loads(stats.read_text())["layers"][0]["reused_texels"], 0, "finished work was lost")
+        resumed = self.baked.read_bytes()
+        self.bake(*args, "--no-cache")
+        self.assertEqual(self.baked.read_bytes(), resumed)
+
+    def test_a_damaged_cache_is_not_believed(self):
+        cache = self.folder / "c"
+        self.bake("--cache", cache)
+        reference = self.baked.read_bytes()
+        for entry in cache.iterdir():
+            data = bytearray(entry.read_bytes())
+            data[len(data) // 2] ^= 0x40
+            entry.write_bytes(bytes(data))
+        self.bake("--cache", cache)
+        self.assertEqual(self.baked.read_bytes(), reference)
+
+    def test_baking_a_baked_file_again_does_not_grow_it(self):
+        self.bake()
+        again = self.folder / "again.glb"
+        self.bake(scene=self.baked, output=again)
+        self.assertLess(again.stat().st_size, 1.05 * self.baked.stat().st_size)
+
+    def test_dynamic_nodes_are_kept_but_not_baked(self):
+        b = glb.Builder()
+        b.node(b.quads([([-1, 0, -1], [0, 0, 2], [2, 0, 0])], b.material([1, 1, 1])), "floor")
+        b.node(b.box([-1, 0.01, -1], [1, 1, 1]), "door", extras={"relume": {"dynamic": True}})
+        scene = b.write(self.folder / "door.glb")
+        self.bake("--layer", "ao:distance=2", scene=scene)
+        after, _ = glb.read_glb(self.baked)
+        door = after["meshes"][after["nodes"][1]["mesh"]]["primitives"][0]
+        self.assertNotIn("TEXCOORD_1", door["attributes"])
+        plane = json.loads(relume("inspect", self.baked, "--json").stdout)["layers"][0]["planes"][0]
+        self.assertGreater(plane["min"], 0.99, "a dynamic object cast a baked shadow")
+
+    def test_dry_run_tells_and_bakes_nothing(self):
+        said = relume("bake", self.scene, "-o", self.baked, "--dry-run", "--atlas-size", 128).stdout
+        for text in ("texels per metre", "forecast", "mean stretch", "obscurance"):
+            self.assertIn(text, said)
+        self.assertFalse(self.baked.exists())
+
+    def test_statistics_and_report(self):
+        stats, report = self.folder / "s.json", self.folder / "report"
+        self.bake("--stats", stats, "--report", report)
+        s = json.loads(stats.read_text())
+        for key in ("stages", "rays", "rays_per_second", "peak_rss_bytes", "texels", "atlas", "layers"):
+            self.assertIn(key, s)
+        for key in ("width", "height", "coverage", "charts", "mean_stretch", "max_stretch"):
+            self.assertIn(key, s["atlas"])
+        for key in ("name", "bytes", "raw_bytes", "samples", "error_estimate"):
+            self.assertIn(key, s["layers"][0])
+        html = (report / "report.html").read_text()
+        for picture in report.glob("*.png"):
+            self.assertIn(picture.name, html)
+        self.assertGreater(len(list(report.glob("*.png"))), 3)
+
+
+class AfterTheBake(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.bake("--layer", "obscurance", "--layer", "ao:distance=2,bent=true")
+
+    def test_inspect(self):
+        d = json.loads(relume("inspect", self.baked, "--json").stdout)
+        self.assertEqual([layer["name"] for layer in d["layers"]], ["obscurance", "ao"])
+        self.assertEqual([p["name"] for p in d["layers"][1]["planes"]], ["value", "bent"])
+        self.assertIn("obscurance", relume("inspect", self.baked).stdout)
+
+    def test_export_names_and_full_pages(self):
+        maps = self.folder / "maps"
+        relume("export", self.baked, "--layer", "obscurance", "-o", maps)
+        relume("export", self.baked, "--layer", "ao", "-o", maps)
+        self.assertEqual(sorted(p.name for p in maps.iterdir()), ["ao-bent.exr", "ao-value.exr", "obscurance.exr"])
+        _, _, planes = glb.read_exr(maps / "obscurance.exr")
+        self.assertGreater(min(planes["R"]), 0.0, "a texel that no surface covers was not filled")
+        _, _, bent = glb.read_exr(maps / "ao-bent.exr")
+        for x, y, z in zip(bent["R"], bent["G"], bent["B"]):
+            self.assertAlmostEqual(x * x + y * y + z * z, 1, delta=0.01)
+        done = relume("export", self.baked, "--layer", "light", "-o", maps, expect=1)
+        self.assertIn("obscurance", done.stderr)
+
+    def test_compare(self):
+        maps = self.folder / "maps"
+        relume("export", self.baked, "--layer", "obscurance", "-o", maps)
+        relume("export", self.baked, "--layer", "ao", "-o", maps)
+        same, other = maps / "obscurance.exr", maps / "ao-value.exr"
+        self.assertEqual(json.loads(relume("compare", same, same, "--json").stdout)["rmse"], 0)
+        self.assertEqual(json.loads(relume("compare", same, same, "--metric", "yee", "--json").stdout)["visible_pixels"], 0)
+        self.assertGreater(json.loads(relume("compare", same, other, "--metric", "flip", "--json").stdout)["mean"], 0.001)
+        relume("compare", same, other, "--diff", self.folder / "d.png")
+        self.assertTrue((self.folder / "d.png").exists())
+
+    def test_relight_follows_the_equation(self):
+        # E = (I_A + beta sum I/r^2) W + direct: linear in the lights; beta = 0 and no ambient leave the direct light.
+        lights = self.folder / "lights.json"
+        out = {}
+        for name, intensity, extra in (("one", 4, []), ("two", 8, []), ("direct", 4, ["--beta", 0]), ("dark", 0, ["--ambient", 1])):
+            lights.write_text(json.dumps([{"type": "point", "intensity": intensity, "position": [0, 1.5, 0]}]))
+            path = self.folder / f"{name}.exr"
+            relume("relight", self.baked, "--lights", lights, "-o", path, "--layer", "obscurance", *extra)
+            out[name] = glb.read_exr(path)[2]["R"]
+        for a, b in zip(out["one"], out["two"]):
+            self.assertAlmostEqual(2 * a, b, delta=1e-4 * (1 + b))
+        self.assertTrue(all(d <= o + 1e-6 for d, o in zip(out["direct"], out["one"])))
+        relume("export", self.baked, "--layer", "obscurance", "-o", self.folder / "maps")
+        obscurance = glb.read_exr(self.folder / "maps" / "obscurance.exr")[2]["R"]
+        close = sum(abs(a - b) < 0.02 for a, b in zip(out["dark"], obscurance))
+        self.assertGreater(close, 0.98 * len(obscurance))
+
+    def test_render_every_view(self):
+        for view in ("obscurance", "occlusion", "lit", "albedo", "normal", "bent-normal", "texels", "charts", "validity"):
+            path = self.folder / f"{view}.png"
+            relume("render", self.baked, "--view", view, "-o", path, "--size", "96x54", "--spp", 4)
+            self.assertEqual(path.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        relume("render", self.baked, "--view", "lit", "-o", self.folder / "a.exr", "--size", "96x54", "--eye", "3,3,3", "--target", "0,0,0")
+        width, height, _ = glb.read_exr(self.folder / "a.exr")
+        self.assertEqual((width, height), (96, 54))
+
+    def test_a_damaged_bake_is_refused(self):
+        data = bytearray(self.baked.read_bytes())
+        data[-200] ^= 0xFF
+        self.baked.write_bytes(bytes(data))
+        done = relume("inspect", self.baked, expect=1)
+        self.assertIn("corner.baked.glb", done.stderr)
+
+
+if __name__ == "__main__":
+    RELUME = sys.argv.pop(1)
+    unittest.main()
