@@ -1,19 +1,18 @@
 #!/usr/bin/env python3
 """How the cost of a bake grows with texels, triangles and the distance limit, what memory a triangle takes, and what the paper's Temple takes.
 
-Writes docs/performance/scaling.json and plots beside it, and prints a table. Every figure is the best of --repeat runs of the release build.
+Writes docs/performance/scaling.json, plots beside it, and the section of docs/performance.md. Every figure is the best of --repeat runs of the release build.
 Usage: bench/scaling.py [--build build/release] [--repeat 3]
 """
 import argparse
 import json
 import pathlib
-import platform
 import subprocess
 import tempfile
 
+from page import ROOT, fill, machine, table
 from plot import line_plot
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "docs" / "performance"
 
 
@@ -54,6 +53,18 @@ def slope(points):
     return sum((x - mx) * (y - my) for x, y in points) / sum((x - mx)**2 for x, _ in points) if n > 1 else 0.0
 
 
+def summary(result):
+    t, lines = result["temple"], result["triangles"]
+    bake = table(("triangles", "atlas, s", "tracing, s", "all, s", "peak memory, MiB"),
+                 [(r["triangles"], f"{r['atlas_s']:.2f}", f"{r['tracing_s']:.2f}", f"{r['total_s']:.2f}", f"{r['peak_rss_bytes'] / 2**20:.0f}") for r in lines])
+    return f"""Measured on {result['machine']}. Peak memory beyond the input file grows by {result['bytes_per_triangle']:.0f} bytes per triangle.
+
+{bake}
+The Temple of the obscurances paper (106,000 polygons, 95,000 patches) took its authors 14 minutes in 2003. The temple of `make_scenes` with {t['triangles']:,} triangles and {t['texels']:,} texels
+takes {t['total_s']:.2f} s from file to file at quality medium, {t['tracing_s']:.2f} s of it tracing, with an estimated error of {100 * t['error_estimate']:.2f} %.
+"""
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
@@ -73,7 +84,7 @@ def main():
 
     memory = [(s["triangles"], s["peak_rss_bytes"] - s["file_bytes"]) for s in triangles]
     result = {
-        "machine": f"{platform.processor() or platform.machine()}, {__import__('os').cpu_count()} cores",
+        "machine": machine(),
         "texels": [{"texels": s["texels"], "tracing_s": s["tracing"], "total_s": s["total"], "rays_per_second": s["rays_per_second"]} for s in texels],
         "triangles": [{"triangles": s["triangles"], "tracing_s": s["tracing"], "atlas_s": stage(s, "atlas"), "total_s": s["total"], "peak_rss_bytes": s["peak_rss_bytes"],
                        "file_bytes": s["file_bytes"]} for s in triangles],
@@ -90,6 +101,7 @@ def main():
          ("tracing", [(r["triangles"], r["tracing_s"]) for r in result["triangles"]])]))
     (OUT / "limit.svg").write_text(line_plot("Castle hall, obscurance, 64 rays per texel, 512 x 512", "distance limit, metres", "seconds of tracing",
         [("tracing", [(r["metres"], r["tracing_s"]) for r in result["limit"]])], True))
+    fill(ROOT / "docs/performance.md", "scaling", summary(result))
     print(json.dumps(result, indent=2))
 
 

@@ -21,7 +21,7 @@ constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,
                                View::kTexels,     View::kCharts,    View::kValidity};
 
 struct RenderOptions {
-  std::string input, output, view, layer, lights, ambient, background = "0.05", tone = "filmic";
+  std::string input, output, view, layer, lights, ambient, background = "0.05", tone = "auto";
   std::string eye, target, size = "960x540", renderer = "cpu";
   float fov_deg = 50, exposure = 0, beta = 0.1f;
   int camera = -1, spp = 16;
@@ -40,10 +40,11 @@ View viewOf(const std::string& text, const Opened& opened) {
   return opened.scene.lights.empty() ? View::kObscurance : View::kLit;
 }
 
-picture::Viewpoint viewpointOf(const RenderOptions& options, const trace::Tracer& tracer) {
+picture::Viewpoint viewpointOf(const RenderOptions& options, IVec2 size, const trace::Tracer& tracer) {
   if (options.eye.empty() != options.target.empty())
     throw Error(ErrorCode::kUsage, "--eye and --target", "belong together", "give both, or --camera");
-  if (options.eye.empty()) return picture::defaultViewpoint(tracer, options.camera);
+  const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+  if (options.eye.empty()) return picture::defaultViewpoint(tracer, options.camera, aspect);
   const Point eye = parseTriple(options.eye, "--eye", false),
               target = parseTriple(options.target, "--target", false);
   if (eye == target) throw Error(ErrorCode::kUsage, "--eye and --target", "are the same point");
@@ -54,6 +55,12 @@ bool isData(View view) {
   return view == View::kNormal || view == View::kBentNormal || view == View::kCharts ||
          view == View::kTexels || view == View::kValidity || view == View::kOcclusion ||
          view == View::kAlbedo;
+}
+
+// Lamps need a curve that bends bright light; the obscurance of ambient light is between 0 and 1 as it is.
+image::ToneCurve curveOf(const RenderOptions& options, View view) {
+  const bool filmic = options.tone == "filmic" || (options.tone == "auto" && view == View::kLit);
+  return filmic && !isData(view) ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain;
 }
 
 void renderPicture(const RenderOptions& options, Progress& progress) {
@@ -74,13 +81,11 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   picture.beta = options.beta;
   picture.background = parseTriple(options.background, "--background", true);
   const image::Image linear = picture::render(tracer, opened->asset ? &*opened->asset : nullptr,
-                                              viewpointOf(options, tracer), picture, progress);
+                                              viewpointOf(options, size, tracer), picture, progress);
   const bool png = options.output.ends_with(".png");
-  const auto curve = options.tone == "filmic" && !isData(picture.view) ? image::ToneCurve::kFilmic
-                                                                       : image::ToneCurve::kPlain;
-  image::writeImage(
-      options.output,
-      png ? image::toneMap(linear, curve, isData(picture.view) ? 0.0f : options.exposure) : linear);
+  image::writeImage(options.output, png ? image::toneMap(linear, curveOf(options, picture.view),
+                                                         isData(picture.view) ? 0.0f : options.exposure)
+                                        : linear);
 }
 
 }  // namespace
@@ -121,8 +126,8 @@ void addRender(CLI::App& app, Program& program) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--exposure", options->exposure, "stops, for .png")->capture_default_str();
-  command->add_option("--tone", options->tone, "tone curve, for .png")
-      ->check(CLI::IsMember({"filmic", "plain"}))
+  command->add_option("--tone", options->tone, "tone curve, for .png; auto: filmic for lit pictures")
+      ->check(CLI::IsMember({"auto", "filmic", "plain"}))
       ->capture_default_str();
   command->add_option("--background", options->background, "linear, one number or R,G,B")
       ->capture_default_str();

@@ -128,7 +128,7 @@ void writeReport(const fs::path& folder, const fs::path& baked, const bake::Bake
     options.background = Vec3(0.05f);
     if (shot.view == View::kLit) options.ambient = Irradiance(0.3f);
     const image::Image linear = picture::render(tracer, &*opened->asset, viewpoint, options, progress);
-    const bool light = shot.view == View::kLit || shot.view == View::kObscurance;
+    const bool light = shot.view == View::kLit;
     image::writeImage(folder / shot.file,
                       image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain));
   }

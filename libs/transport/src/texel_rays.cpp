@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rays from the whole footprint make the value the texel's mean (patch average of [IKSZ03] 4.5), not that of
 // one point, so contacts are anti-aliased. Each starts off the surface that it really lies on (offsetOrigin
-// with the sub-sample's own face).
+// with the sub-sample's own face). Where the chart folds inside a texel the faces look different ways: each
+// then has the hemisphere of its own.
 #include "texel_rays.h"
 
 #include <algorithm>
@@ -10,6 +11,13 @@
 #include "relume/trace/tracer.h"
 
 namespace relume::transport {
+namespace {
+
+// Below this cosine a face is beyond a fold. Above it faces share the texel's shading normal, which smooths
+// the facets of a curved surface.
+constexpr float kFoldCosine = 0.7f;
+
+}  // namespace
 
 TexelRays::TexelRays(const scene::Scene& scene, const atlas::Texels& texels, const atlas::SurfacePoint& point,
                      std::uint64_t seed)
@@ -24,9 +32,10 @@ TexelRays::TexelRays(const scene::Scene& scene, const atlas::Texels& texels, con
   for (std::uint32_t i = 0; i < place_count_; ++i) {
     const atlas::SubSample& sample = texels.samples[point.first_sample + i];
     Normal normal = scene::geometricNormal(scene, point.instance, sample.triangle);
-    // A sliver has no normal, and a face turned away from the texel's has another outside.
-    if (!(glm::dot(normal, point.geometric_normal) > 0.0f)) normal = point.geometric_normal;
-    places_[i] = {trace::offsetOrigin(sample.position, normal), normal};
+    if (normal == Normal(0)) normal = point.geometric_normal;  // a sliver
+    const bool folded = glm::dot(normal, point.geometric_normal) < kFoldCosine;
+    places_[i] = {trace::offsetOrigin(sample.position, normal), normal,
+                  folded ? Frame::about(normal) : frame_.shading};
   }
 }
 
@@ -39,17 +48,17 @@ void TexelRays::generate(std::uint32_t first, std::uint32_t count, float limit, 
   // the places of one cell of directions would not spread. Exchanging points by the batch's number gives each
   // cell the columns and rows of a net.
   const std::uint32_t exchange = (first / count) & (count - 1);
-  const Frame& f = frame_.shading;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const float x = directions.x[i], y = directions.y[i], z = directions.z[i];
-    rays.direction_x[i] = x * f.t.x + y * f.b.x + z * f.n.x;
-    rays.direction_y[i] = x * f.t.y + y * f.b.y + z * f.n.y;
-    rays.direction_z[i] = x * f.t.z + y * f.b.z + z * f.n.z;
     rays.alpha_seed[i] = alpha_stream_ + first + i;
     rays.code[i] = directions.code[i];
   }
   if (place_count_ == 0) {
+    const Frame& f = frame_.shading;
     for (std::uint32_t i = 0; i < count; ++i) {
+      const float x = directions.x[i], y = directions.y[i], z = directions.z[i];
+      rays.direction_x[i] = x * f.t.x + y * f.b.x + z * f.n.x;
+      rays.direction_y[i] = x * f.t.y + y * f.b.y + z * f.n.y;
+      rays.direction_z[i] = x * f.t.z + y * f.b.z + z * f.n.z;
       const float u = square.x[i ^ exchange] - 0.5f, v = square.y[i ^ exchange] - 0.5f;
       rays.origin_x[i] = centre_.x + (u * dp_dx_.x + v * dp_dy_.x);
       rays.origin_y[i] = centre_.y + (u * dp_dx_.y + v * dp_dy_.y);
@@ -63,8 +72,9 @@ void TexelRays::generate(std::uint32_t first, std::uint32_t count, float limit, 
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto k = static_cast<std::uint32_t>(square.x[i ^ exchange] * static_cast<float>(place_count_));
       const Place& place = places_[std::min(k, place_count_ - 1)];
+      const Direction d = place.shading.toWorld({directions.x[i], directions.y[i], directions.z[i]});
+      rays.direction_x[i] = d.x, rays.direction_y[i] = d.y, rays.direction_z[i] = d.z;
       rays.origin_x[i] = place.origin.x, rays.origin_y[i] = place.origin.y, rays.origin_z[i] = place.origin.z;
-      const Direction d(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
       rays.t_max[i] = RayFrame::above(d, place.geometric_normal) ? limit : -1.0f;
     }
   }

@@ -31,6 +31,7 @@ class TexelRays {
   struct Place {
     Point origin;
     Normal geometric_normal;
+    Frame shading;
   };
 
   RayFrame frame_;

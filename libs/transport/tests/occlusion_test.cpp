@@ -323,6 +323,37 @@ TEST(SolveOcclusion, UnevenFootprintsUseTheirSubSamples) {
   for (const Vec3& v : result.value) EXPECT_NEAR(v.x, 0.5f, 0.01f);
 }
 
+// A chart may go round an edge inside a texel. Nothing shades a convex body, so neither face may see the
+// other's inside; a ray with one face's hemisphere and origin on the other would start into the body.
+TEST(SolveOcclusion, FoldsOfAConvexBodyAreUnoccluded) {
+  scene::Mesh box;
+  made::addBox(box, {-1, -1, -1}, {1, 1, 1});
+  const scene::Scene scene = made::sceneOf(std::move(box));
+  constexpr std::uint32_t kRight = 2, kTop = 10;  // triangles facing +x, +z
+  ASSERT_EQ(scene::geometricNormal(scene, 0, kRight), Normal(1, 0, 0));
+  ASSERT_EQ(scene::geometricNormal(scene, 0, kTop), Normal(0, 0, 1));
+  atlas::Texels texels = made::repeatedPoint(4, {0.98f, 0, 1});
+  texels.samples = {{{0.98f, 0, 1}, kTop}, {{1, 0, 0.98f}, kRight}};
+  for (atlas::SurfacePoint& p : texels.points) p.triangle = kTop, p.first_sample = 0, p.sample_count = 2;
+  const OcclusionResult result = solve(scene, texels, {});
+  for (const Vec3& v : result.value) EXPECT_EQ(v, Vec3(1.0f));
+}
+
+// The same where two faces meet in a corner: an endless wall takes half of the hemisphere, weighted by the
+// cosine, from a floor beside it.
+TEST(SolveOcclusion, FoldsOfACornerAreTheMeanOfBothFaces) {
+  scene::Mesh corner;
+  made::addQuad(corner, {0, -1000, 0}, {1000, 0, 0}, {0, 2000, 0});
+  made::addQuad(corner, {0, -1000, 0}, {0, 2000, 0}, {0, 0, 1000});
+  const scene::Scene scene = made::sceneOf(std::move(corner));
+  ASSERT_EQ(scene::geometricNormal(scene, 0, 2), Normal(1, 0, 0));
+  atlas::Texels texels = made::repeatedPoint(4, {0.01f, 0, 0});
+  texels.samples = {{{0.01f, 0, 0}, 0}, {{0, 0, 0.01f}, 2}};
+  for (atlas::SurfacePoint& p : texels.points) p.first_sample = 0, p.sample_count = 2;
+  const OcclusionResult result = solve(scene, texels, {});
+  for (const Vec3& v : result.value) EXPECT_NEAR(v.x, 0.5f, 0.02f);
+}
+
 TEST(SolveOcclusion, TexelsThatHaveConvergedStop) {
   const scene::Scene scene = wallScene(1.0f, 1.0f);
   // From beside the wall to 60 m away, where there is nothing left to see.

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Rays per second beside bare Embree, and relighting: runs the benchmark programs, fills docs/performance.md.
+
+    bench/rates.py [BUILD_DIR]        (default: build/bench, made by scripts/build bench)
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from page import ROOT, fill, machine, table
+
+PAGE = ROOT / "docs/performance.md"
+
+
+def run(program, pattern):
+    """{benchmark: its fields}, each the median of three."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out.json"
+        subprocess.run([program, f"--benchmark_filter={pattern}", f"--benchmark_out={out}", "--benchmark_min_time=1", "--benchmark_repetitions=3"],
+                       check=True, stdout=subprocess.DEVNULL)
+        rows = json.loads(out.read_text())["benchmarks"]
+    return {row["run_name"]: row for row in rows if row.get("aggregate_name") == "median"}
+
+
+def rays(build):
+    found = run(build / "libs/transport/relume_transport_bench", "transport.(bare|solver)")
+    rows = []
+    for name, row in found.items():
+        kind, where, query, limit, *samples = name.split("/")[0].split(".")[1:]
+        if kind == "solver":
+            bare = found[f"transport.bare.{where}.{query}.{limit}"]["rays_per_second"]
+            rate = row["rays_per_second"]
+            rows.append((where, "any hit" if query == "occluded" else "first hit", limit, samples[0], f"{bare / 1e6:.1f}", f"{rate / 1e6:.1f}", f"{rate / bare:.2f}"))
+    return table(("scene", "rays", "limit", "rays per texel", "bare Embree, million/s", "solver, million/s", "ratio"), rows)
+
+
+def relighting(build):
+    found = run(build / "libs/relight/relume_relight_bench", "obscurance")
+    return table(("benchmark", "milliseconds"), [(name.split("/real_time")[0], f"{row['real_time'] * {'ns': 1e-6, 'us': 1e-3, 'ms': 1}[row['time_unit']]:.2f}")
+                                                 for name, row in found.items()])
+
+
+def main():
+    build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/bench")
+    fill(PAGE, "rays", f"Measured on {machine()}.\n\n{rays(build)}")
+    fill(PAGE, "relighting", f"Measured on {machine()}.\n\n{relighting(build)}")
+    print(f"wrote {PAGE}")
+
+
+if __name__ == "__main__":
+    main()
