@@ -21,8 +21,8 @@ using picture::View;
 
 struct Shot {
   View view;
-  const char* file;
-  const char* caption;
+  std::string file, caption;
+  std::string layer = "";
 };
 
 constexpr const char* kStyle = R"(
@@ -58,14 +58,20 @@ std::vector<Shot> shotsFor(const asset::Asset& asset, bool has_lights) {
   std::vector<Shot> shots;
   if (has_lights)
     shots.push_back({View::kLit, "lit.png", "The scene's lights, with ambient light weighted by the bake"});
-  shots.push_back({View::kObscurance, "ambient.png", "Ambient light alone, weighted by the bake"});
-  shots.push_back({View::kOcclusion, "layer.png", "The baked layer alone, on white surfaces"});
+  for (const asset::Layer& layer : asset.layers) {
+    shots.push_back({View::kObscurance, "ambient-" + layer.name + ".png",
+                     "Ambient light alone, weighted by " + layer.name, layer.name});
+    shots.push_back({View::kOcclusion, "layer-" + layer.name + ".png",
+                     layer.name + " alone, on white surfaces", layer.name});
+    if (layer.planes.size() > 1)
+      shots.push_back({View::kBentNormal, "bent-" + layer.name + ".png",
+                       "Bent normals of " + layer.name + ": where the open directions point", layer.name});
+  }
   shots.push_back({View::kTexels, "texels.png", "Texels of the atlas: even squares mean even density"});
   shots.push_back({View::kCharts, "charts.png", "Charts of the atlas"});
-  if (!asset.layers.front().planes.empty() && asset.layers.front().planes.size() > 1)
-    shots.push_back({View::kBentNormal, "bent.png", "Bent normals: where the open directions point"});
   shots.push_back({View::kValidity, "validity.png",
-                   "Red texels lie inside other geometry and were filled from their neighbours"});
+                   "Red texels lie inside other geometry and were filled from their neighbours; magenta "
+                   "objects move, so they are not baked"});
   return shots;
 }
 
@@ -124,6 +130,7 @@ void writeReport(const fs::path& folder, const fs::path& baked, const bake::Bake
   const std::vector<Shot> shots = shotsFor(*opened->asset, !opened->scene.lights.empty());
   for (const Shot& shot : shots) {
     picture::PictureOptions options{.width = 960, .height = 540, .samples = 16, .view = shot.view};
+    options.layer = shot.layer;
     options.lights = opened->scene.lights;
     options.background = Vec3(0.05f);
     if (shot.view == View::kLit) options.ambient = Irradiance(0.3f);

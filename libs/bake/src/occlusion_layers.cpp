@@ -13,8 +13,9 @@ using transport::DistanceWeight;
 using transport::OcclusionKind;
 using transport::OcclusionOptions;
 
-// A texel most of whose rays meet the back of a face lies inside geometry: its light means nothing.
-constexpr float kBuriedShare = 0.5f;
+// A texel of which so many rays meet the back of a face lies, in part at least, inside geometry. What the
+// buried part does not see would darken the part that shows: a row of dark dots where bodies meet.
+constexpr float kBuriedShare = 0.25f;
 
 // The row of a texel: value[channels], bent[3] if asked for, error, share of back faces.
 struct RowLayout {
@@ -61,7 +62,7 @@ Albedo roundedMeanAlbedo(const atlas::Texels& texels) {
 
 Digest keyOf(const OcclusionOptions& o, const RowLayout& layout) {
   return Hasher()
-      .add("occlusion 1")  // raise when the solver's results change
+      .add("occlusion 2")  // raise when the solver's results change
       .add(o.kind)
       .add(o.weight.shape)
       .add(o.weight.tau)

@@ -30,8 +30,9 @@ namespace {
 
 constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
 constexpr std::uint32_t kGroupRays = kGroupTexels * kMaxBatch;
-constexpr std::uint32_t kSuspectRays = 4,
-                        kBuriedRays = 16;  // of a texel, to learn whether it lies inside something
+// Of a texel, to learn how much of it lies inside something: first few rays, if one meets a back face more.
+constexpr std::uint32_t kSuspectRays = 8, kBuriedRays = 32;
+constexpr float kSuspectShare = 0.25f;  // of blocked rays, below which it is not asked
 
 /// What is known of one texel after some rounds.
 struct Tally {
@@ -218,13 +219,12 @@ class GroupSolver {
   }
 
   /// Back faces after any-hit rays, which do not tell them: first hits of a few rays of those texels where
-  /// most rays are blocked (at most so many can have met a back face), of more where one of these has met
-  /// one.
+  /// enough rays are blocked (at most so many can have met a back face).
   void findBuried(std::uint32_t group) {
     std::vector<std::uint32_t>& suspects = active_;
     suspects.clear();
     for (std::uint32_t i = 0; i < group; ++i) {
-      if (tallies_[i].mean() < 0.5f) suspects.push_back(i);
+      if (tallies_[i].mean() < 1.0f - kSuspectShare) suspects.push_back(i);
     }
     for (const std::uint32_t count : {kSuspectRays, kBuriedRays}) {
       if (suspects.empty()) return;

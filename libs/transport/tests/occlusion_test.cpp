@@ -244,6 +244,26 @@ TEST(SolveOcclusion, BuriedTexelsAreFound) {
   }
 }
 
+TEST(SolveOcclusion, HalfBuriedTexelsAreFound) {
+  scene::Mesh box;
+  made::addBox(box, {0, -4, -0.5f}, {2, 4, 1});
+  const scene::Scene scene = made::sceneOf(std::move(box));
+  for (const float buried : {0.1f, 0.4f, 0.7f}) {  // so much of each texel lies in the box
+    const atlas::Texels texels =
+        made::texelGrid(4, 16, {buried - 0.5f, -0.7f, 0}, {0, 0.01f, 0}, {0, 0.1f, 0});
+    atlas::Texels wide = texels;
+    for (atlas::SurfacePoint& p : wide.points) p.dp_dx = {1, 0, 0}, p.dp_dy = {0, 0.05f, 0};
+    for (const Shape shape : {Shape::kStep, Shape::kExponential}) {
+      OcclusionOptions options;
+      options.weight.shape = shape;
+      const OcclusionResult result = solve(scene, wide, options);
+      // 32 stratified rays of each texel when any hit will do; blocked rays below a quarter are not asked.
+      const float tolerance = shape == Shape::kStep ? 0.15f : 0.05f;
+      for (const float share : result.back_share) EXPECT_NEAR(share, buried, tolerance);
+    }
+  }
+}
+
 TEST(SolveOcclusion, FrontFacesAreNotTakenForBackFaces) {
   const scene::Scene scene = made::room();  // a floor texel in the corner sees front faces only
   OcclusionOptions options;

@@ -55,8 +55,8 @@ struct OcclusionResult {
       bent;  ///< unit, world; the shading normal where nothing is open. Empty unless asked for
   std::vector<float> error;  ///< estimated standard error of the value's mean channel
   /// Share of rays (those within the limit) that met a back face: a texel inside geometry is near 1. For
-  /// kStep, whose rays do not look for the first hit, estimated from a few, and 0 where less than half of the
-  /// rays are blocked.
+  /// kStep, whose rays do not look for the first hit, estimated from a few, and 0 where less than a quarter
+  /// of the rays are blocked.
   std::vector<float> back_share;
   std::uint64_t rays = 0;
 };
