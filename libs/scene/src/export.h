@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "access.h"
+#include "extensions.h"
 #include "relume/core/hash.h"
 #include "relume/scene/gltf.h"
 
 namespace relume::scene::gltf {
-
-/// The key under `extras` where this program notes what it must know to undo a bake.
-inline constexpr const char* kNotes = "relume";
 
 /// The file being made: JSON, and where the bytes of each of its buffer views come from.
 class Output {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Which glTF extensions are known here, and in what sense.
+// Which glTF extensions are known here, and in what sense; the names of our own additions.
 #pragma once
 #include <string_view>
 
 namespace relume::scene::gltf {
+
+/// The key under `extras` where this program notes what it must know to undo a bake, and where authors mark
+/// nodes.
+inline constexpr const char* kNotes = "relume";
 
 inline constexpr const char* kTransferExtension = "RELUME_transfer";
 inline constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "extensions.h"
 #include "import.h"
 
 namespace relume::scene::gltf {
@@ -128,17 +129,41 @@ Material MaterialReader::read(const Value& json) {
   return m;
 }
 
+/// What primitives without a material look like. glTF's default is white metal, which reflects no diffuse
+/// light: a level without materials would be black.
+Material standardMaterial() {
+  Material m;
+  m.name = "default";
+  m.base_colour = {0.8f, 0.8f, 0.8f, 1.0f};
+  m.metallic = 0;
+  return m;
+}
+
+/// Whether export made this material, to show occlusion where the input had none, and nobody gave it a look
+/// since.
+bool standsForNone(const Value& material) {
+  if (material["pbrMetallicRoughness"]) return false;
+  const nlohmann::json* notes = &material.json();
+  for (const char* key : {"extras", kNotes, "standsForNone"}) {
+    if (!notes->is_object() || !notes->contains(key)) return false;
+    notes = &(*notes)[key];
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<TextureSource> importMaterials(Access& access, Scene& scene, Warnings& warnings) {
   MaterialReader reader(access, scene, warnings);
   const Value materials = access.root()["materials"];
-  for (std::size_t i = 0; i < materials.size(); ++i) scene.materials.push_back(reader.read(materials.at(i)));
-  // glTF's default is white metal, which reflects no diffuse light: a level without materials would be black.
-  Material& standard = scene.materials.emplace_back();
-  standard.name = "default";
-  standard.base_colour = {0.8f, 0.8f, 0.8f, 1.0f};
-  standard.metallic = 0;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Value json = materials.at(i);
+    Material& m = scene.materials.emplace_back(reader.read(json));
+    if (!standsForNone(json)) continue;
+    m.base_colour = standardMaterial().base_colour;
+    m.metallic = standardMaterial().metallic;
+  }
+  scene.materials.push_back(standardMaterial());
   return reader.takeSources();
 }
 

@@ -197,6 +197,10 @@ TEST(Export, PrimitivesWithoutMaterialGetOne) {
   ASSERT_EQ(json["materials"].size(), 1u);
   EXPECT_EQ(json["meshes"][0]["primitives"][0]["material"], 0);
   EXPECT_FALSE(json["materials"][0].contains("pbrMetallicRoughness"));
+  // Read back, it is still the white dielectric that stands for none, not glTF's default of white metal.
+  const Material& material = out.scene.materials[out.scene.meshes[0].material];
+  EXPECT_EQ(material.metallic, 0.0f);
+  EXPECT_EQ(material.base_colour, Vec4(0.8f, 0.8f, 0.8f, 1));
 }
 
 TEST(Export, WithoutOcclusionMaterialsStay) {
