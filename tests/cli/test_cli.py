@@ -96,6 +96,11 @@ class Usage(CliTest):
         self.assertFails(4, "bake", self.scene, "-o", self.baked, "--max-memory", "1M", says=["--max-memory"])
         self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.is_file()), ["corner.glb"])
 
+    def test_an_absurd_atlas_is_refused_before_it_takes_all_memory(self):
+        for slip in (["--texel-density", "1e5"], []):
+            self.assertFails(4, "bake", self.scene, "-o", self.baked, "--atlas-size", 16384, "--max-memory", "500M", *slip,
+                             says=["corner.glb", slip[0] if slip else "--atlas-size"])
+
     def test_quiet_when_piped_and_json_for_tools(self):
         self.assertEqual(self.bake("--quality", "draft").stderr, "")
         lines = [json.loads(line) for line in self.bake("--no-cache", "--progress", "json").stderr.splitlines()]

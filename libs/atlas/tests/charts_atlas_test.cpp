@@ -93,6 +93,25 @@ TEST(ChartsAtlas, WhatIsLargerThanAPageIsScaledDownWithAWarning) {
   EXPECT_EQ(narrowestGutter(atlas, owner, 2), 2);
 }
 
+// A slip in the density must not take all memory: 20 cubes of 6 m^2 at 1000 texels/m are 20 whole pages.
+TEST(ChartsAtlas, MoreTexelsThanThereMayBeAreRefused) {
+  const scene::Scene scene = sceneOf(std::vector<scene::Mesh>(20, cube(1)));
+  AtlasOptions options = sized(256, 1000);
+  options.most_texels = 1'000'000;
+  try {
+    build(scene, options);
+    FAIL() << "20 pages of 65536 texels were accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kOutOfMemory);
+    EXPECT_THAT(error.remedy(), HasSubstr("--texel-density"));
+  }
+  options.most_texels = 2'000'000;
+  EXPECT_EQ(build(scene, options).pages, 20u);
+  options = sized(2048);
+  options.most_texels = 2'000'000;
+  EXPECT_THROW(build(scene, options), Error);
+}
+
 TEST(ChartsAtlas, InstancesThatDifferByASimilarityShareCharts) {
   scene::Scene scene = sceneOf({bumps(24)});
   scene.instances.clear();

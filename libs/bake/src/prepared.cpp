@@ -25,6 +25,16 @@ QualitySettings qualityOf(const BakeOptions& options) {
   return quality;
 }
 
+/// The atlas that was asked for, with a bound on its texels: beyond it the bake would end in the system's
+/// hands.
+atlas::AtlasOptions withinMemory(const BakeOptions& options) {
+  constexpr std::uint64_t kBytesPerTexel = 250;  // about: surface point, row, planes
+  atlas::AtlasOptions result = options.atlas;
+  const std::uint64_t bytes = options.max_memory ? options.max_memory : machineBytes();
+  if (bytes) result.most_texels = std::min(result.most_texels, bytes / kBytesPerTexel);
+  return result;
+}
+
 void warnOfScale(const scene::Scene& scene, float diagonal, Warnings& warnings) {
   if (diagonal >= 2.0f && diagonal <= 400.0f) return;
   warnings.push_back(
@@ -70,7 +80,7 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   warnOfScale(p->scene, diagonal, warnings);
   stopwatch.lap("import");
 
-  p->atlas = atlas::buildAtlas(p->scene, options.atlas, warnings, progress);
+  p->atlas = atlas::buildAtlas(p->scene, withinMemory(options), warnings, progress);
   stopwatch.lap("atlas");
   obeyMemoryLimit(options.max_memory);
 

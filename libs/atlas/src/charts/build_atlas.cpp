@@ -125,6 +125,37 @@ class Builder {
     const double page = double(options_.page_size) * options_.page_size;
     expected_density_ = options_.texels_per_metre > 0 ? double(options_.texels_per_metre)
                                                       : std::sqrt(kExpectedCoverage * page / area);
+    refuseTooMany();
+  }
+
+  /// Covered texels at a density; an instance has one page at most.
+  double texelsAt(double density) const {
+    const double page = double(options_.page_size) * options_.page_size;
+    double texels = 0;
+    for (const Use& use : uses_)
+      texels += std::min(page, layouts_[use.layout].area * use.scale * use.scale * density * density);
+    return texels;
+  }
+
+  void refuseTooMany() const {
+    const auto most = static_cast<double>(options_.most_texels);
+    const double texels = texelsAt(expected_density_);
+    if (texels <= most) return;
+    std::string remedy;
+    if (options_.texels_per_metre > 0) {
+      double possible = expected_density_;
+      while (texelsAt(possible) > most) possible *= 0.9;
+      remedy = fmt::format("lower --texel-density to {:.3g}", 0.99 * possible);
+    } else {
+      remedy = fmt::format("lower --atlas-size to {:.0f}",
+                           4 * std::floor(options_.page_size * std::sqrt(most / texels) / 4));
+    }
+    throw Error(
+        ErrorCode::kOutOfMemory, scene_.name,
+        fmt::format(
+            "its atlas takes {:.3g} million texels; the memory there is, or --max-memory, allows {:.3g}",
+            texels * 1e-6, most * 1e-6),
+        remedy);
   }
 
   void refuseLayout(const Layout& layout, const std::string& fault) {

@@ -30,6 +30,9 @@ struct AtlasOptions {
   float cone_angle =
       1.2f;  ///< radians between a face and its chart's axis while charts grow; joins are bound by stretch
   bool reuse_uv1 = true;  ///< keep a valid TEXCOORD_1
+  /// More covered texels than this are refused before any work: a slip in the options above would otherwise
+  /// take all memory. The default is what a texel's index can count.
+  std::uint64_t most_texels = 0xffffffffu;
 };
 
 struct Chart {
@@ -78,7 +81,8 @@ struct Atlas {
 /// Deterministic: equal geometry, equal atlas. Instances of a mesh whose transforms differ by a similarity
 /// share charts: the same source_vertex and triangles. A TEXCOORD_1 that is refused is a warning with the
 /// reason and numbers. Throws Error kEmptyScene when there is nothing static to bake, kUsage for impossible
-/// options and for a mesh whose charts are more than a page can hold, kInterrupted.
+/// options and for a mesh whose charts are more than a page can hold, kOutOfMemory for more than most_texels,
+/// kInterrupted.
 Atlas buildAtlas(const scene::Scene& scene, const AtlasOptions& options, Warnings& warnings,
                  Progress& progress);
 

@@ -9,6 +9,9 @@ namespace relume {
 
 std::uint64_t peakResidentBytes();     ///< 0 where the system does not tell
 std::uint64_t currentResidentBytes();  ///< 0 where the system does not tell
+/// What this process may use at most: the machine's memory, or less in a container. 0 where the system does
+/// not tell.
+std::uint64_t machineBytes();
 
 /// "512M", "2GiB", "1500000" to bytes (K, M, G, T are powers of 1024). Throws Error kUsage.
 std::uint64_t parseSize(std::string_view text);
