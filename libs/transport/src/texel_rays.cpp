@@ -13,9 +13,10 @@
 namespace relume::transport {
 namespace {
 
-// Below this cosine a face is beyond a fold. Above it faces share the texel's shading normal, which smooths
-// the facets of a curved surface.
-constexpr float kFoldCosine = 0.7f;
+// A face turned away from the texel's by more than this (14 degrees) has the hemisphere of its own normal;
+// the others share the texel's shading normal. In a furnished room, 45 degrees instead of 14 raised the
+// error of all texels from 3.4 to 3.7 %.
+constexpr float kFoldCosine = 0.97f;
 
 }  // namespace
 
