@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 
 #include "command.h"
+#include "exposure.h"
 #include "files.h"
 #include "lights.h"
 #include "relume/core/file.h"
@@ -23,7 +25,8 @@ constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,
 struct RenderOptions {
   std::string input, output, view, layer, lights, ambient, background = "0.05", tone = "auto";
   std::string eye, target, size = "960x540", renderer = "cpu";
-  float fov_deg = 50, exposure = 0, beta = 0.1f;
+  std::optional<float> exposure;
+  float fov_deg = 50, beta = 0.1f;
   int camera = -1, spp = 16;
 };
 
@@ -74,18 +77,22 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   picture.lights = chooseLights(options.lights, opened->scene);
   // Without a word, an ambient light that shows the obscurance: alone it makes white surfaces white, beside
   // lamps it is faint.
-  const std::string ambient = !options.ambient.empty()     ? options.ambient
-                              : picture.view == View::kLit ? "0.3"
-                                                           : "3.14159265";
+  const bool beside_lamps = picture.view == View::kLit && !picture.lights.empty();
+  const std::string ambient = !options.ambient.empty() ? options.ambient
+                              : beside_lamps           ? "0.3"
+                                                       : "3.14159265";
   picture.ambient = Irradiance(parseTriple(ambient, "--ambient", true));
   picture.beta = options.beta;
   picture.background = parseTriple(options.background, "--background", true);
   const image::Image linear = picture::render(tracer, opened->asset ? &*opened->asset : nullptr,
                                               viewpointOf(options, size, tracer), picture, progress);
-  const bool png = options.output.ends_with(".png");
-  image::writeImage(options.output, png ? image::toneMap(linear, curveOf(options, picture.view),
-                                                         isData(picture.view) ? 0.0f : options.exposure)
-                                        : linear);
+  if (!options.output.ends_with(".png")) return image::writeImage(options.output, linear);
+  float stops = isData(picture.view) ? 0.0f : options.exposure.value_or(0.0f);
+  if (picture.view == View::kLit && !options.exposure) {
+    stops = chooseExposure(linear, picture.background);
+    if (stops != 0.0f) fmt::print("shown with --exposure {:.1f}\n", stops);
+  }
+  image::writeImage(options.output, image::toneMap(linear, curveOf(options, picture.view), stops));
 }
 
 }  // namespace
@@ -125,7 +132,8 @@ void addRender(CLI::App& app, Program& program) {
       ->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--exposure", options->exposure, "stops, for .png")->capture_default_str();
+  command->add_option("--exposure", options->exposure,
+                      "stops, for .png; without it, 0, or less where lamps would leave nothing but white");
   command->add_option("--tone", options->tone, "tone curve, for .png; auto: filmic for lit pictures")
       ->check(CLI::IsMember({"auto", "filmic", "plain"}))
       ->capture_default_str();
