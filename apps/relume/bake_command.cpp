@@ -126,6 +126,7 @@ void bakeScene(const BakeCommandOptions& options, Progress& progress) {
   }
   requireWritable(output);
   if (!options.stats.empty()) requireWritable(options.stats);
+  if (!options.report.empty()) makeFolder(options.report);
   const bake::BakeResult result = bake::bake(document, library, progress);
   print(result.warnings);
   writeFileAtomically(output, result.glb);

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <system_error>
 
 #include "command.h"
+#include "files.h"
 #include "relume/asset/asset.h"
 #include "relume/core/error.h"
 #include "relume/image/io.h"
@@ -39,9 +39,7 @@ void exportLayer(const ExportOptions& options, Progress&) {
   namespace fs = std::filesystem;
   const asset::Asset asset = asset::readAsset(options.asset);
   const asset::Layer& layer = asset.layer(options.layer);
-  std::error_code ec;
-  fs::create_directories(options.folder, ec);
-  if (ec) throw Error(ErrorCode::kCannotWrite, options.folder, "cannot make the folder: " + ec.message());
+  makeFolder(options.folder);
   for (const asset::Plane& plane : layer.planes) {
     const std::string stem = layer.planes.size() == 1 ? layer.name : layer.name + "-" + plane.name;
     const fs::path path = fs::path(options.folder) / (stem + "." + options.format);

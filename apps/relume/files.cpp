@@ -11,7 +11,24 @@
 namespace relume::app {
 
 void print(const Warnings& warnings) {
-  for (const Warning& warning : warnings) fmt::print(stderr, "warning: {}\n", warning.text());
+  constexpr std::size_t kMostNamed = 4;
+  std::vector<bool> said(warnings.size());
+  for (std::size_t i = 0; i < warnings.size(); ++i) {
+    if (said[i]) continue;
+    Warning line = warnings[i];
+    std::size_t more = 0, named = 1;
+    for (std::size_t k = i + 1; k < warnings.size(); ++k) {
+      if (warnings[k].problem != line.problem || warnings[k].remedy != line.remedy) continue;
+      said[k] = true;
+      if (warnings[k].subject == warnings[i].subject) continue;
+      if (named++ < kMostNamed)
+        line.subject += ", " + warnings[k].subject;
+      else
+        ++more;
+    }
+    if (more > 0) line.subject += fmt::format(" and {} more", more);
+    fmt::print(stderr, "warning: {}\n", line.text());
+  }
 }
 
 std::unique_ptr<Opened> open(const std::filesystem::path& path) {
@@ -57,6 +74,15 @@ IVec2 parseExtent(const std::string& text, const std::string& option) {
     throw Error(ErrorCode::kUsage, option + " " + text, "is not a size",
                 "write for example " + option + " 960x540");
   return size;
+}
+
+void makeFolder(const std::filesystem::path& path) {
+  std::error_code ec;
+  std::filesystem::create_directories(path, ec);
+  if (ec)
+    throw Error(ErrorCode::kCannotWrite, path.string(), "cannot make the folder: " + ec.message(),
+                "choose a place that you may write to");
+  requireWritable(path / "any");
 }
 
 std::filesystem::path beside(const std::filesystem::path& input, const std::string& ending) {

@@ -13,7 +13,7 @@
 
 namespace relume::app {
 
-/// Prints warnings to stderr, one a line.
+/// Prints warnings to stderr, one a line; those that say the same of several things share it.
 void print(const Warnings& warnings);
 
 /// A scene, and its bake where the file carries one.
@@ -28,6 +28,9 @@ std::unique_ptr<Opened> open(const std::filesystem::path& path);
 Vec3 parseTriple(const std::string& text, const std::string& option, bool one_is_enough);
 /// "960x540". Throws Error kUsage naming the option.
 IVec2 parseExtent(const std::string& text, const std::string& option);
+
+/// Makes a folder where there is none. Throws Error kCannotWrite unless files can be made in it.
+void makeFolder(const std::filesystem::path& path);
 
 /// "scene.glb" to "scene" + ending, beside it.
 std::filesystem::path beside(const std::filesystem::path& input, const std::string& ending);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -10,10 +12,12 @@
 #include "relume/core/error.h"
 #include "relume/core/file.h"
 #include "relume/core/memory.h"
+#include "relume/scene/gltf.h"
 
 namespace relume::app {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
@@ -22,6 +26,8 @@ struct InspectOptions {
 };
 
 Json describe(const asset::Parameter& parameter) {
+  // JSON has no infinity; the word is what --layer reads.
+  if (const double* v = std::get_if<double>(&parameter); v && std::isinf(*v)) return "inf";
   return std::visit([](const auto& v) { return Json(v); }, parameter);
 }
 
@@ -36,6 +42,20 @@ Json describe(const asset::Plane& plane) {
           {"mean", plane.values.empty() ? 0 : sum / static_cast<double>(plane.values.size())},
           {"min", lo},
           {"max", hi}};
+}
+
+/// What each layer takes in the file. `document` has been decoded, so its numbers lead somewhere.
+void addSizes(Json& description, const nlohmann::json& document) {
+  const auto& layers = document.at("extensions").at("RELUME_transfer").at("layers");
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    std::uint64_t bytes = 0;
+    for (const auto& plane : layers[i].at("planes"))
+      bytes += document.at("bufferViews")
+                   .at(plane.at("bufferView").get<std::size_t>())
+                   .at("byteLength")
+                   .get<std::uint64_t>();
+    description["layers"][i]["bytes"] = bytes;
+  }
 }
 
 Json describe(const asset::Asset& asset, std::size_t file_bytes) {
@@ -66,6 +86,11 @@ Json describe(const asset::Asset& asset, std::size_t file_bytes) {
   return out;
 }
 
+std::string textOf(const Json& parameter) {
+  if (parameter.is_number_float()) return fmt::format("{:.4g}", parameter.get<double>());
+  return parameter.is_string() ? parameter.get<std::string>() : parameter.dump();
+}
+
 void printTable(const std::string& path, const Json& d) {
   const Json& atlas = d["atlas"];
   fmt::print("{}: {}, baked by {}\n", path, formatSize(d["file_bytes"].get<std::size_t>()),
@@ -77,12 +102,13 @@ void printTable(const std::string& path, const Json& d) {
       atlas["coverage"].get<double>() * 100, atlas["charts"].get<std::size_t>(),
       atlas["invalid_texels"].get<std::size_t>());
   for (const Json& layer : d["layers"]) {
-    fmt::print("layer {}\n", layer["name"].get<std::string>());
+    fmt::print("layer {}, {}\n", layer["name"].get<std::string>(),
+               formatSize(layer["bytes"].get<std::uint64_t>()));
     fmt::print("  {} x {} x {} x {}\n", layer["emitters"].get<std::string>(),
                layer["transport"].get<std::string>(), layer["receivers"].get<std::string>(),
                layer["codec"].get<std::string>());
     for (const auto& [key, value] : layer["parameters"].items())
-      fmt::print("  {:<12} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+      fmt::print("  {:<12} {}\n", key, textOf(value));
     fmt::print("  {:<12} at most {} rays per texel, estimated relative error {:.2g} %\n", "samples",
                layer["samples"].get<std::uint64_t>(), layer["error_estimate"].get<double>() * 100);
     for (const Json& plane : layer["planes"])
@@ -95,7 +121,10 @@ void printTable(const std::string& path, const Json& d) {
 
 void inspect(const InspectOptions& options, Progress&) {
   const auto bytes = readFile(options.asset);
-  const Json description = describe(asset::decode(bytes, options.asset), bytes.size());
+  Json description = describe(asset::decode(bytes, options.asset), bytes.size());
+  const fs::path path = options.asset;
+  addSizes(description,
+           scene::gltf::Document::parse(bytes, path.filename().string(), path.parent_path()).json());
   if (options.json)
     fmt::print("{}\n", description.dump(2));
   else

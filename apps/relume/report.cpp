@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
 #include <vector>
 
+#include "exposure.h"
 #include "files.h"
 #include "relume/core/file.h"
 #include "relume/core/memory.h"
@@ -121,9 +121,7 @@ std::string numbersTable(const bake::Statistics& s) {
 
 void writeReport(const fs::path& folder, const fs::path& baked, const bake::BakeResult& result,
                  Progress& progress) {
-  std::error_code ec;
-  fs::create_directories(folder, ec);
-  if (ec) throw Error(ErrorCode::kCannotWrite, folder.string(), "cannot make the folder: " + ec.message());
+  makeFolder(folder);
   const auto opened = open(baked);
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const picture::Viewpoint viewpoint = picture::defaultViewpoint(tracer, -1);
@@ -137,7 +135,8 @@ void writeReport(const fs::path& folder, const fs::path& baked, const bake::Bake
     const image::Image linear = picture::render(tracer, &*opened->asset, viewpoint, options, progress);
     const bool light = shot.view == View::kLit;
     image::writeImage(folder / shot.file,
-                      image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain));
+                      image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain,
+                                     light ? chooseExposure(linear, options.background) : 0.0f));
   }
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"

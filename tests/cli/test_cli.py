@@ -91,6 +91,8 @@ class Usage(CliTest):
     def test_what_cannot_be_written_is_status_3_before_any_work(self):
         self.assertFails(3, "bake", self.scene, "-o", self.folder / "no" / "where.glb", says=["where.glb"])
         self.assertFails(3, "render", self.scene, "-o", self.folder / "no" / "a.png")
+        self.assertFails(3, "bake", self.scene, "-o", self.baked, "--report", self.scene + "/report", says=["report"])
+        self.assertFalse(self.baked.exists())
 
     def test_memory_limit_is_status_4_and_leaves_no_file(self):
         self.assertFails(4, "bake", self.scene, "-o", self.baked, "--max-memory", "1M", says=["--max-memory"])
@@ -237,6 +239,18 @@ class Bake(CliTest):
         plane = json.loads(relume("inspect", self.baked, "--json").stdout)["layers"][0]["planes"][0]
         self.assertGreater(plane["min"], 0.99, "a dynamic object cast a baked shadow")
 
+    def test_equal_warnings_share_a_line(self):
+        b = glb.Builder()
+        for i in range(7):
+            mesh = b.quads([([0, 0, i], [1, 0, 0], [0, 1, 0])], name=f"card {i}")
+            b.json["meshes"][mesh]["primitives"].append({**b.json["meshes"][mesh]["primitives"][0], "mode": 0})
+            b.node(mesh, f"card {i}")
+        lines = self.bake(scene=b.write(self.folder / "cards.glb")).stderr.splitlines()
+        points = [line for line in lines if "points" in line]
+        self.assertEqual(len(points), 1, lines)
+        self.assertIn("card 0", points[0])
+        self.assertIn("and 3 more", points[0])
+
     def test_dry_run_tells_and_bakes_nothing(self):
         said = relume("bake", self.scene, "-o", self.baked, "--dry-run", "--atlas-size", 128).stdout
         for text in ("texels per metre", "forecast", "mean stretch", "obscurance"):
@@ -269,6 +283,13 @@ class AfterTheBake(CliTest):
         self.assertEqual([layer["name"] for layer in d["layers"]], ["obscurance", "ao"])
         self.assertEqual([p["name"] for p in d["layers"][1]["planes"]], ["value", "bent"])
         self.assertIn("obscurance", relume("inspect", self.baked).stdout)
+        size = self.baked.stat().st_size
+        self.assertTrue(all(0 < layer["bytes"] < size for layer in d["layers"]))
+
+    def test_inspect_shows_an_endless_distance(self):
+        self.bake("--layer", "ao:distance=inf")
+        self.assertEqual(json.loads(relume("inspect", self.baked, "--json").stdout)["layers"][0]["parameters"]["distance"], "inf")
+        self.assertRegex(relume("inspect", self.baked).stdout, r"distance +inf\n")
 
     def test_export_names_and_full_pages(self):
         maps = self.folder / "maps"
@@ -320,12 +341,57 @@ class AfterTheBake(CliTest):
         width, height, _ = glb.read_exr(self.folder / "a.exr")
         self.assertEqual((width, height), (96, 54))
 
+    def test_a_lit_picture_without_lamps_is_that_of_ambient_light(self):
+        none = self.folder / "none.json"
+        none.write_text("[]")
+        for view in ("lit", "obscurance"):
+            relume("render", self.baked, "--view", view, "--lights", none, "-o", self.folder / f"{view}.exr", "--size", "96x54", "--spp", 1)
+        difference = relume("compare", self.folder / "lit.exr", self.folder / "obscurance.exr", "--json").stdout
+        self.assertLess(json.loads(difference)["rmse"], 1e-5)
+
+    def test_a_sun_does_not_leave_a_white_picture(self):
+        sun = self.folder / "sun.json"
+        sun.write_text(json.dumps([{"type": "directional", "direction": [-0.3, -1, -0.4], "intensity": 20000}]))
+        args = ["render", self.baked, "--view", "lit", "-o", self.folder / "sun.png", "--size", "96x54", "--spp", 1]
+        self.assertRegex(relume(*args, "--lights", sun).stdout, r"--exposure -1\d\.\d")
+        self.assertEqual(relume(*args, "--lights", sun, "--exposure", -3).stdout, "")
+        self.assertEqual(relume(*args).stdout, "", "its own lamp of 5 cd needs no other exposure")
+
     def test_a_damaged_bake_is_refused(self):
         data = bytearray(self.baked.read_bytes())
         data[-200] ^= 0xFF
         self.baked.write_bytes(bytes(data))
         done = relume("inspect", self.baked, expect=1)
         self.assertIn("corner.baked.glb", done.stderr)
+
+
+class Validator(CliTest):
+    """Baked files beside the Khronos validator (tests/validate; `npm ci` there installs it, scripts/test does)."""
+
+    TOOL = pathlib.Path(__file__).parent.parent / "validate"
+    SCENES = pathlib.Path(__file__).parent.parent.parent / "examples/scenes"
+
+    def setUp(self):
+        super().setUp()
+        if not (self.TOOL / "node_modules").is_dir() or not shutil.which("node"):
+            self.skipTest("the validator is not installed")
+
+    def test_baked_scenes_are_valid(self):
+        scenes = [pathlib.Path(self.scene), *sorted(self.SCENES.glob("*.glb"))]
+        self.assertGreater(len(scenes), 4)
+        for scene in scenes:
+            self.bake("--layer", "ao", "--layer", "spectral", "--quality", "draft", scene=scene)
+            done = subprocess.run(["node", self.TOOL / "validate.mjs", "--json", self.baked], capture_output=True, text=True, timeout=300)
+            report = next(iter(json.loads(done.stdout).values()))
+            self.assertEqual(report["errors"], 0, f"{scene.name}: {report['codes']}")
+
+    def test_the_validator_would_tell(self):
+        document, _ = glb.read_glb(self.scene)
+        document["nodes"][0]["mesh"] = 99
+        broken = self.folder / "broken.gltf"
+        broken.write_text(json.dumps(document))
+        done = subprocess.run(["node", self.TOOL / "validate.mjs", broken], capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

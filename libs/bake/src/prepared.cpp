@@ -39,7 +39,9 @@ void warnOfScale(const scene::Scene& scene, float diagonal, Warnings& warnings) 
   if (diagonal >= 2.0f && diagonal <= 400.0f) return;
   warnings.push_back(
       {scene.name,
-       fmt::format("the scene is {:.3g} metres across, which suggests another unit than the metre", diagonal),
+       fmt::format(
+           "the scene is {:.3g} metres across; if that is not its true size, its unit is not the metre",
+           diagonal),
        "distances left to themselves follow the scene's size; give distance= to choose"});
 }
 
