@@ -166,7 +166,7 @@ void addBake(CLI::App& app, Program& program) {
       ->check(CLI::IsMember({"draft", "medium", "high", "final"}))
       ->capture_default_str();
   command->add_option("--samples", options->samples, "rays per texel, exactly; rounded up to a power of two")
-      ->check(CLI::Range(1, 1 << 20));
+      ->check(CLI::Range(1, 1 << 16));
   command
       ->add_option("--atlas-size", options->atlas_size,
                    "texels along a page of the atlas; the scene is fitted to one page")
