@@ -57,6 +57,10 @@ Outcome compareYee(const image::Image& a, const image::Image& b) {
 
 void compare(const CompareOptions& options, Progress&) {
   if (!options.diff.empty()) requireWritable(options.diff);
+  for (const std::string& file : {options.test, options.reference})
+    if (file.ends_with(".glb"))
+      throw Error(ErrorCode::kUnsupported, file, "is a bake, not an image",
+                  "`relume export` writes the planes of its layers as images");
   const image::Image test = image::readImage(options.test), reference = image::readImage(options.reference);
   image::Image mask;
   if (!options.mask.empty()) mask = image::readImage(options.mask);

@@ -221,6 +221,11 @@ class Bake(CliTest):
         self.bake("--cache", cache)
         self.assertEqual(self.baked.read_bytes(), reference)
 
+    def test_a_cache_that_cannot_be_written_is_said(self):
+        done = self.bake("--cache", self.scene + "/cache")
+        self.assertIn("--no-cache", done.stderr)
+        self.assertEqual(done.stderr.count("warning:"), 1)
+
     def test_baking_a_baked_file_again_does_not_grow_it(self):
         self.bake()
         again = self.folder / "again.glb"
@@ -314,6 +319,7 @@ class AfterTheBake(CliTest):
         self.assertGreater(json.loads(relume("compare", same, other, "--metric", "flip", "--json").stdout)["mean"], 0.001)
         relume("compare", same, other, "--diff", self.folder / "d.png")
         self.assertTrue((self.folder / "d.png").exists())
+        self.assertIn("relume export", relume("compare", self.baked, self.baked, expect=1).stderr)
 
     def test_relight_follows_the_equation(self):
         # E = (I_A + beta sum I/r^2) W + direct: linear in the lights; beta = 0 and no ambient leave the direct light.

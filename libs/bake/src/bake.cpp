@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 
 #include "pages.h"
 #include "prepared.h"
+#include "relume/core/file.h"
 #include "relume/core/memory.h"
 #include "relume/core/version.h"
 #include "relume/image/io.h"
@@ -33,6 +35,19 @@ asset::AtlasTable tableOf(const atlas::Texels& texels) {
     table.chart.push_back(p.chart);
   }
   return table;
+}
+
+// A cache that cannot be written costs time later, not the bake now.
+void warnOfCache(const std::filesystem::path& folder, Warnings& warnings) {
+  if (folder.empty()) return;
+  std::error_code ec;
+  std::filesystem::create_directories(folder, ec);
+  try {
+    requireWritable(folder / "any");
+  } catch (const Error& error) {
+    warnings.push_back({folder.string(), "nothing can be kept there for later bakes: " + error.problem(),
+                        "choose another --cache, or --no-cache"});
+  }
 }
 
 // RMS of the standard errors over valid texels, relative to the RMS of the first plane.
@@ -107,6 +122,7 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
   BakeResult result;
   Statistics& statistics = result.statistics;
   Stopwatch stopwatch(statistics);
+  warnOfCache(options.cache, result.warnings);
   const auto prepared = prepare(document, options, statistics, stopwatch, result.warnings, progress);
   Prepared& p = *prepared;
 

@@ -91,7 +91,9 @@ std::uint64_t Value::integer() const {
 std::uint32_t Value::index(std::size_t count, const char* things) const {
   const std::uint64_t i = integer();
   if (i >= count)
-    fail(ErrorCode::kInvalidReference, fmt::format("refers to {} {}, but there are {}", things, i, count));
+    fail(ErrorCode::kInvalidReference,
+         count == 0 ? fmt::format("refers to {} {}, but there is none", things, i)
+                    : fmt::format("refers to {} {}, but the last is {}", things, i, count - 1));
   return static_cast<std::uint32_t>(i);
 }
 
