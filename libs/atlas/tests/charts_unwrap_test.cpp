@@ -103,6 +103,7 @@ TEST(ChartsJoin, SmallCubesUnfoldAndLargeOnesDoNot) {
     return charts;
   };
   EXPECT_EQ(joined(0.001).size(), 6u) << "sides of 1000 texels keep their creases sharp";
+  EXPECT_EQ(joined(1.0 / 13).size(), 6u) << "light would be seen to bleed about an edge of 13 texels";
   const std::vector<ChartMesh> small = joined(0.2);
   EXPECT_LE(small.size(), 3u) << "sides of 5 texels are worth unfolding";
   for (const ChartMesh& chart : small) EXPECT_NEAR(chart.max_stretch, 1, 1e-6);

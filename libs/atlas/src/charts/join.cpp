@@ -23,7 +23,9 @@ namespace relume::atlas {
 namespace {
 
 constexpr float kSharpest = 1.75f;  // radians: no unfolding about edges sharper than 100 degrees
-constexpr double kDwarfed = 0.8;    // share of the surface in the box of a chart below which gutters dwarf it
+// Share of the surface in the box of a chart below which gutters dwarf it: sides of 10 texels. Interpolation
+// mixes the two sides of a fold, so larger faces, where that would be seen, keep their creases.
+constexpr double kDwarfed = 0.6;
 constexpr double kSeamTolerance = 0.02;  // texels by which the two sides of a rigid seam may miss each other
 constexpr int kRelaxations = 5;
 constexpr std::size_t kMostWork = 6;      // triangles relaxed, per triangle of the mesh
