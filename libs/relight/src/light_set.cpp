@@ -21,7 +21,9 @@ using Json = nlohmann::json;
 class LightReader {
  public:
   LightReader(const Json& json, std::string file, std::size_t index)
-      : json_(json), file_(std::move(file)), where_(fmt::format("lights[{}]", index)) {
+      : LightReader(json, std::move(file), fmt::format("lights[{}]", index)) {}
+  LightReader(const Json& json, std::string file, std::string where)
+      : json_(json), file_(std::move(file)), where_(std::move(where)) {
     if (!json_.is_object()) fail("", "is not an object");
   }
 
@@ -123,7 +125,8 @@ void allowOnlyFieldsOf(Light::Kind kind, const LightReader& reader) {
       return reader.allowOnly(
           {"type", "name", "color", "intensity", "range", "position", "direction", "spot", "extras"});
     case Light::Kind::kDirectional:
-      return reader.allowOnly({"type", "name", "color", "intensity", "direction", "position", "extras"});
+      return reader.allowOnly(
+          {"type", "name", "color", "intensity", "direction", "position", "angularDiameter", "extras"});
     case Light::Kind::kArea:
       return reader.allowOnly({"type", "name", "color", "intensity", "position", "normal", "area", "extras"});
   }
@@ -162,6 +165,8 @@ Light readLight(const LightReader& reader) {
   if (light.kind == Light::Kind::kSpot || light.kind == Light::Kind::kDirectional)
     light.direction = reader.direction("direction");
   if (light.kind == Light::Kind::kSpot) readCone(reader, light);
+  if (light.kind == Light::Kind::kDirectional)
+    light.angular_radius = 0.5f * reader.number("angularDiameter", 0, kPi).value_or(0.0f);
   if (light.kind == Light::Kind::kArea) {
     light.direction = reader.direction("normal");
     const auto area = reader.number("area", 0, kMax);
@@ -171,11 +176,39 @@ Light readLight(const LightReader& reader) {
   return light;
 }
 
+EnvironmentSource readEnvironment(const LightReader& reader) {
+  constexpr float kMax = LightReader::kMax;
+  reader.allowOnly({"radiance", "file", "rotation", "sky", "name", "extras"});
+  EnvironmentSource source;
+  source.file = reader.text("file");
+  source.rotation = reader.number("rotation", -kMax, kMax).value_or(0.0f);
+  const auto radiance = reader.vector("radiance", 0, kMax);
+  source.radiance = radiance.value_or(source.radiance);
+  if (reader.find("sky")) {
+    if (!source.file.empty()) reader.fail("sky", "stands beside a file", "give one of them");
+    const LightReader sky = reader.inner("sky");
+    sky.allowOnly({"direction", "turbidity", "extras"});
+    source.sky.emplace();
+    source.sky->sun_direction = sky.direction("direction");
+    if (!(source.sky->sun_direction.y < 0)) sky.fail("direction", "leaves the sun below the horizon");
+    source.sky->turbidity = sky.number("turbidity", 2, 10).value_or(source.sky->turbidity);
+  } else if (source.file.empty() && !radiance) {
+    reader.fail("radiance", "is missing", "give a radiance, a file or a sky");
+  }
+  return source;
+}
+
+Json parseJson(std::string_view json, const std::string& name) {
+  Json root = Json::parse(json, nullptr, false);
+  if (root.is_discarded()) throw Error(ErrorCode::kInvalidJson, name, "is not valid JSON");
+  return root;
+}
+
 }  // namespace
 
 LightSet parseLights(std::string_view json, const std::string& name) {
-  const Json root = Json::parse(json, nullptr, false);
-  if (root.is_discarded()) throw Error(ErrorCode::kInvalidJson, name, "is not valid JSON");
+  const Json root = parseJson(json, name);
+  if (root.is_object() && root.contains("environment") && !root.contains("lights")) return {};
   const Json& list = root.is_object() && root.contains("lights") ? root["lights"] : root;
   if (!list.is_array())
     throw Error(ErrorCode::kInvalidValue, name, "is not a list of lights",
@@ -183,6 +216,12 @@ LightSet parseLights(std::string_view json, const std::string& name) {
   LightSet lights;
   for (std::size_t i = 0; i < list.size(); ++i) lights.push_back(readLight(LightReader(list[i], name, i)));
   return lights;
+}
+
+std::optional<EnvironmentSource> parseEnvironment(std::string_view json, const std::string& name) {
+  const Json root = parseJson(json, name);
+  if (!root.is_object() || !root.contains("environment")) return {};
+  return readEnvironment(LightReader(root["environment"], name, "environment"));
 }
 
 }  // namespace relume::relight

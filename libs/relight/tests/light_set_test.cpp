@@ -50,6 +50,38 @@ TEST(ParseLights, AlsoAnObjectWithAListAndAnEmptyList) {
   EXPECT_TRUE(parseLights("[]", "").empty());
 }
 
+TEST(ParseLights, ASunMayHaveASize) {
+  const LightSet lights =
+      parseLights(R"([{"type":"directional","direction":[0,-1,0],"angularDiameter":0.0093}])", "");
+  EXPECT_FLOAT_EQ(lights[0].angular_radius, 0.00465f);
+}
+
+TEST(ParseEnvironment, ConstantFileAndSky) {
+  EXPECT_FALSE(parseEnvironment("[]", ""));
+  EXPECT_FALSE(parseEnvironment(R"({"lights":[]})", ""));
+  const auto constant = parseEnvironment(R"({"environment":{"radiance":[1,2,3]}})", "");
+  ASSERT_TRUE(constant);
+  EXPECT_EQ(constant->radiance, Vec3(1, 2, 3));
+  EXPECT_TRUE(parseLights(R"({"environment":{"radiance":[1,2,3]}})", "").empty());
+  const auto file = parseEnvironment(R"({"environment":{"file":"a.hdr","rotation":1.5}})", "");
+  EXPECT_EQ(file->file, "a.hdr");
+  EXPECT_EQ(file->radiance, Vec3(1));
+  EXPECT_EQ(file->rotation, 1.5f);
+  const auto sky = parseEnvironment(R"({"environment":{"sky":{"direction":[0,-2,0],"turbidity":4}}})", "");
+  ASSERT_TRUE(sky->sky);
+  EXPECT_EQ(sky->sky->sun_direction, Vec3(0, -1, 0));
+  EXPECT_EQ(sky->sky->turbidity, 4);
+}
+
+TEST(ParseEnvironment, RefusesWhatItCannotMean) {
+  for (const char* bad : {"7", "{}", R"({"radiance":1})", R"({"radiance":[1,-1,1]})", R"({"fiel":"a.hdr"})",
+                          R"({"file":3})", R"({"sky":{"direction":[0,1,0]}})", R"({"sky":{}})",
+                          R"({"sky":{"direction":[0,-1,0],"turbidity":1}})",
+                          R"({"file":"a.hdr","sky":{"direction":[0,-1,0]}})"}) {
+    EXPECT_THROW(parseEnvironment(std::string(R"({"environment":)") + bad + "}", "l.json"), Error) << bad;
+  }
+}
+
 struct Bad {
   const char* json;
   const char* place;  ///< what the message must name

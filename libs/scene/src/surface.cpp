@@ -76,6 +76,48 @@ Normal shadingNormal(const Scene& scene, const Hit& hit) {
   return glm::dot(n, geometric) < 0 ? -n : n;
 }
 
+namespace {
+
+/// World tangent and handedness of the map at a hit; zero where the texture coordinates span nothing.
+Vec4 tangentAt(const Scene& scene, const Hit& hit, const Corners& at, const TextureRef& map) {
+  const Mat3 m(scene.instances[hit.instance].world_from_local);
+  const float mirror = glm::determinant(m) < 0 ? -1.0f : 1.0f;
+  if (!at.mesh.tangents.empty()) {
+    const Vec4 t = at.interpolate(at.mesh.tangents);
+    return {m * Vec3(t), (t.w < 0 ? -1.0f : 1.0f) * mirror};
+  }
+  const auto& uv = at.mesh.uv[map.uv_set];
+  if (uv.empty()) return Vec4(0);
+  const Vec2 a = map.apply(uv[at.index.x]), s = map.apply(uv[at.index.y]) - a,
+             t = map.apply(uv[at.index.z]) - a;
+  const Point p = at.mesh.positions[at.index.x];
+  const Vec3 e1 = m * (at.mesh.positions[at.index.y] - p), e2 = m * (at.mesh.positions[at.index.z] - p);
+  const float area = s.x * t.y - t.x * s.y;
+  if (!(std::abs(area) > 0)) return Vec4(0);
+  // v runs downwards in glTF, so the bitangent, which points to the top of the map, is minus dp/dv; with
+  // normal = t x b that makes the handedness the sign of minus the area.
+  return {(e1 * t.y - e2 * s.y) / area, (area > 0 ? -1.0f : 1.0f) * mirror};
+}
+
+}  // namespace
+
+Normal mappedNormal(const Scene& scene, const Hit& hit) {
+  const Normal n = shadingNormal(scene, hit);
+  const Corners at = cornersOf(scene, hit);
+  const Material& material = scene.materials[at.mesh.material];
+  if (!material.normal_texture) return n;
+  const Texture& texture = scene.textures[material.normal_texture.texture];
+  if (!texture.image) return n;
+  const Vec4 tangent = tangentAt(scene, hit, at, material.normal_texture);
+  const Vec3 t = unit(Vec3(tangent) - glm::dot(Vec3(tangent), n) * n);
+  if (t == Vec3(0)) return n;
+  Vec3 local = 2.0f * Vec3(lookUp(scene, material.normal_texture, at)) - 1.0f;
+  local.x *= material.normal_scale, local.y *= material.normal_scale;
+  const Normal bent = unit(local.x * t + local.y * tangent.w * glm::cross(n, t) + local.z * n);
+  const Normal geometric = geometricNormal(scene, hit.instance, hit.triangle);
+  return bent == Normal(0) || glm::dot(bent, geometric) <= 0 ? n : bent;
+}
+
 Vec2 textureCoordinate(const Scene& scene, const Hit& hit, std::uint32_t set) {
   return cornersOf(scene, hit).uv(set);
 }

@@ -188,5 +188,53 @@ TEST(Scene, BoundsAndCountAreOfStaticInstances) {
   EXPECT_EQ(scene.bounds().hi, Point(1, 1, 0));
 }
 
+/// A map of one colour: the normal (x, y, z) in tangent space.
+Scene withNormalMap(Vec3 local, const Mat4& place = Mat4(1)) {
+  Scene scene = triangle(place);
+  Texture t;
+  const auto code = [](float x) { return static_cast<unsigned char>(std::lround(255 * (0.5f * x + 0.5f))); };
+  t.image = std::make_shared<const image::Image8>(
+      image::Image8{1, 1, 3, {code(local.x), code(local.y), code(local.z)}});
+  scene.textures.push_back(t);
+  scene.materials[0].normal_texture.texture = 0;
+  return scene;
+}
+
+TEST(Surface, NormalMapsBendAlongTheirTexture) {
+  // u runs along +x. v runs along +y in `triangle`, so the top of the map, where green points, is -y.
+  const Vec3 right = glm::normalize(Vec3(0.6f, 0, 0.8f)), up = glm::normalize(Vec3(0, 0.6f, 0.8f));
+  const Hit hit{0, 0, 0.3f, 0.3f};
+  expectNear(mappedNormal(withNormalMap(right), hit), {0.6f, 0, 0.8f}, 0.01f);
+  expectNear(mappedNormal(withNormalMap(up), hit), {0, -0.6f, 0.8f}, 0.01f);
+  // A mirror image has the mirrored normals.
+  const Mat4 mirror = glm::scale(Mat4(1), Vec3(-1, 1, 1));
+  expectNear(mappedNormal(withNormalMap(right, mirror), hit), {-0.6f, 0, 0.8f}, 0.01f);
+  expectNear(mappedNormal(withNormalMap(up, mirror), hit), {0, -0.6f, 0.8f}, 0.01f);
+  // With tangents of the file the same, and the scale of the map counts.
+  Scene told = withNormalMap(up);
+  told.meshes[0].tangents.assign(3, Vec4(1, 0, 0, -1));
+  expectNear(mappedNormal(told, hit), {0, -0.6f, 0.8f}, 0.01f);
+  told.materials[0].normal_scale = 0;
+  expectNear(mappedNormal(told, hit), {0, 0, 1}, 0.01f);
+}
+
+TEST(Environment, MapAndWorldAgree) {
+  for (const Vec2 uv : {Vec2(0.1f, 0.2f), Vec2(0.5f, 0.5f), Vec2(0.9f, 0.7f)}) {
+    const Vec2 back = equirectFromDirection(directionFromEquirect(uv));
+    EXPECT_LT(glm::length(back - uv), 1e-5f);
+  }
+  expectNear(directionFromEquirect({0.5f, 0.5f}), {1, 0, 0});
+  expectNear(directionFromEquirect({0.25f, 0.5f}), {0, 0, -1});
+  // 8 x 4 pixels, one bright one above +x; turned by a quarter to the left it is above -z.
+  auto map = std::make_shared<image::Image>(8, 4, 3);
+  map->setRgb(4, 1, Vec3(8));
+  Environment environment{Radiance(0.5f), map, 0};
+  const Direction d = directionFromEquirect({4.5f / 8, 1.5f / 4});
+  EXPECT_NEAR(environment.from(d).rgb.r, 4, 1e-4f);
+  environment.rotation = kPi / 2;
+  EXPECT_NEAR(environment.from({d.z, d.y, -d.x}).rgb.r, 4, 1e-4f);
+  EXPECT_EQ((Environment{Radiance(2.0f), nullptr, 0}).from({0, 1, 0}), Radiance(2.0f));
+}
+
 }  // namespace
 }  // namespace relume::scene

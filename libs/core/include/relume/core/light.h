@@ -22,6 +22,7 @@ struct Light {
   Point position{0.0f};                           ///< world
   Direction direction{0, 0, -1};  ///< world, the way the light travels; area: the side it shines to
   float area = 0.0f;              ///< m^2, area lights
+  float angular_radius = 0.0f;    ///< radians, directional: half of what its disk subtends; 0: a point
 };
 using LightSet = std::vector<Light>;
 

@@ -13,6 +13,7 @@
 #include "relume/core/quantity.h"
 #include "relume/core/vec.h"
 #include "relume/image/image.h"
+#include "relume/scene/environment.h"
 
 namespace relume::scene {
 
@@ -107,6 +108,7 @@ struct Scene {
   std::vector<Material> materials;  ///< last: glTF's default material
   std::vector<Texture> textures;
   std::vector<Light> lights;
+  Environment environment;  ///< glTF has none: dark until somebody sets it
   std::vector<Camera> cameras;
 
   Box3 bounds() const;                ///< of static instances, world
@@ -125,6 +127,10 @@ Point worldPosition(const Scene& scene, const Hit& hit);
 Normal geometricNormal(const Scene& scene, std::uint32_t instance, std::uint32_t triangle);
 /// Interpolated vertex normal, world, on the geometric normal's side.
 Normal shadingNormal(const Scene& scene, const Hit& hit);
+/// The shading normal bent by the material's normal map, world, on the geometric normal's side; without a
+/// map, or without texture coordinates that span the surface, the shading normal. Tangents are the mesh's, or
+/// made from the map's texture coordinates.
+Normal mappedNormal(const Scene& scene, const Hit& hit);
 Vec2 textureCoordinate(const Scene& scene, const Hit& hit, std::uint32_t set);
 
 /// What a surface is made of at one point. An unlit surface reports metallic 1 and no emission, so that its

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Everything in a scene that emits, in one table to sample light from: punctual lights, area lights (disks),
+// suns (directional lights with an angular size), emissive triangles with their textures, the environment.
+// Based on:
+//   [RTR] Akenine-Moeller, Haines, Hoffman. Real-Time Rendering, 3rd ed. Section 11.1: emitted radiance L_e.
+//   [CK18] Conty Estevez, Kulla. Importance Sampling of Many Lights with Adaptive Tree Splitting. HPG 2018.
+//   [KHR] KHR_lights_punctual.
+// One emitter is chosen in proportion to an estimate of the irradiance that it gives (light_tree for what has
+// a place; lights that have none beside it), half of the time; otherwise lights without a place and the rest
+// of the lights have equal chances, because none of this knows what is hidden. Then a direction: uniform in
+// solid angle for triangles and suns, in area for disks, by radiance for the environment.
+// What holds: an emitter that can be hit by a ray has a pdf for it, so sampling of light and of directions
+// combine (multiple importance sampling). Point and spot lights, and directional ones of no size, can only be
+// sampled. Limits: disks are looked for one by one on every ray, meant for some tens of them. An emissive
+// triangle is chosen by the mean of 32 look-ups of its texture.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "relume/core/light.h"
+#include "relume/scene/scene.h"
+
+namespace relume::transport {
+
+/// Light that may arrive at a point from one direction.
+struct LightSample {
+  Direction direction{0, 0, 1};  ///< to the light
+  Point end{0};                  ///< where a shadow ray ends, just before the light; meaningless when endless
+  bool endless = false;
+  bool delta = false;  ///< of a light that no ray meets by chance
+  /// Radiance; of a delta light the irradiance on a plane that faces it.
+  Vec3 value{0.0f};
+  /// Per steradian; of a delta light the probability of its choice. 0: no light from there.
+  float pdf = 0.0f;
+};
+
+/// Light that a ray meets, and the density with which sample() would have chosen its direction.
+struct LightSeen {
+  Radiance radiance;
+  float pdf = 0.0f;  ///< per steradian
+};
+
+class Emitters {
+ public:
+  /// Keeps a reference to `scene`, which must not change. `include_dynamic`: as the tracer was told.
+  explicit Emitters(const scene::Scene& scene, bool include_dynamic = false);
+  ~Emitters();
+  Emitters(Emitters&&) noexcept;
+
+  /// Nothing emits.
+  bool empty() const;
+  std::size_t triangleCount() const;
+
+  /// Light at p from the side of n (unit; zero: from all around). u, choice in [0, 1). Visibility is left to
+  /// the caller.
+  LightSample sample(Point p, Normal n, Vec2 u, float choice) const;
+
+  /// A ray from p (as above) along d meets a triangle at `hit`, `distance` metres away: what it emits towards
+  /// p.
+  LightSeen onSurface(Point p, Normal n, Direction d, const scene::Hit& hit, float distance,
+                      bool back_face) const;
+  /// Appends what a ray from p sees that is no surface: disks nearer than `distance` and, where it escapes
+  /// (infinite distance), suns and environment.
+  void onRay(Point p, Normal n, Direction d, float distance, std::vector<LightSeen>& seen) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relume::transport

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+#include "relume/transport/emitters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "environment_sampler.h"
+#include "light_tree.h"
+#include "relume/core/frame.h"
+#include "relume/core/parallel.h"
+#include "relume/core/sampling.h"
+#include "relume/trace/tracer.h"
+#include "spherical_triangle.h"
+
+namespace relume::transport {
+namespace {
+
+constexpr std::uint32_t kTextureLookUps = 32;
+// A textured triangle is never thought darker than this share of its factor: look-ups may have missed.
+constexpr float kLeastTexture = 0.05f;
+// Half of the choices are by estimated irradiance, half are even (see the header).
+constexpr float kByEstimate = 0.5f;
+
+struct Triangle {
+  Point v0, v1, v2;
+  Normal normal;
+  std::uint32_t instance, triangle;
+  bool two_sided;
+};
+
+struct Disk {
+  Point centre;
+  Normal normal;
+  float radius;
+  Radiance radiance;
+  std::uint32_t light;  ///< index among local emitters
+};
+
+struct Sun {
+  Direction to_light;
+  float angular_radius;  ///< radians; 0: a delta light
+  Vec3 irradiance;       ///< facing it
+  bool delta() const { return angular_radius <= 0.0f; }
+  /// 1 - cos of the radius, without its cancellation.
+  float height() const {
+    const float s = std::sin(0.5f * angular_radius);
+    return 2.0f * s * s;
+  }
+  float sine() const { return std::sin(angular_radius); }
+  /// L = E / (pi sin^2 a): a disk of uniform radiance that gives E to a plane facing its centre.
+  Radiance radiance() const { return Radiance(irradiance * (kInvPi / (sine() * sine()))); }
+  float pdf() const { return 0.5f * kInvPi / height(); }
+  bool covers(Direction d) const {
+    const Vec3 apart = d - to_light;
+    return glm::dot(apart, apart) <= 2.0f * height();
+  }
+};
+
+float meanEmission(const scene::Scene& scene, const scene::Material& material, std::uint32_t instance,
+                   std::uint32_t triangle) {
+  const float factor = luminance(material.emission);
+  if (!material.emission_texture) return factor;
+  float sum = 0;
+  for (std::uint32_t i = 0; i < kTextureLookUps; ++i) {
+    const Vec2 u = sobol2(i, 0);
+    const float root = std::sqrt(u.x);
+    sum +=
+        luminance(scene::surfaceAt(scene, {instance, triangle, root * (1 - u.y), root * u.y}).emission.rgb);
+  }
+  return std::max(sum / kTextureLookUps, kLeastTexture * factor);
+}
+
+EmitterBounds boundsOf(const Light& light) {
+  EmitterBounds bounds;
+  bounds.box.add(light.position);
+  bounds.axis = light.direction;
+  bounds.intensity = luminance(light.colour) * light.intensity;
+  switch (light.kind) {
+    case Light::Kind::kPoint:
+    case Light::Kind::kDirectional:
+      bounds.cos_spread = -1.0f;
+      break;
+    case Light::Kind::kSpot:
+      bounds.cos_spread = std::cos(light.inner_cone);
+      bounds.cos_emission = std::cos(light.outer_cone - light.inner_cone) - 1e-3f;
+      break;
+    case Light::Kind::kArea: {
+      const float radius = std::sqrt(light.area * kInvPi);
+      const Vec3 half = radius * glm::sqrt(glm::max(Vec3(1.0f) - light.direction * light.direction, 0.0f));
+      bounds.box.add(light.position - half), bounds.box.add(light.position + half);
+      bounds.intensity *= light.area;
+      break;
+    }
+  }
+  return bounds;
+}
+
+}  // namespace
+
+struct Emitters::Impl {
+  Impl(const scene::Scene& the_scene, bool include_dynamic)
+      : scene(the_scene), environment(the_scene.environment) {
+    std::vector<EmitterBounds> bounds;
+    addLights(bounds);
+    addTriangles(bounds, include_dynamic);
+    tree = std::make_unique<LightTree>(bounds);
+  }
+
+  void addLights(std::vector<EmitterBounds>& bounds) {
+    for (const Light& light : scene.lights) {
+      const Vec3 strength = light.colour * light.intensity;
+      if (!(luminance(strength) > 0)) continue;
+      if (light.kind == Light::Kind::kDirectional) {
+        suns.push_back({-light.direction, std::min(light.angular_radius, kPi / 2), strength});
+        continue;
+      }
+      const auto index = static_cast<std::uint32_t>(local_lights.size());
+      if (light.kind == Light::Kind::kArea)
+        disks.push_back(
+            {light.position, light.direction, std::sqrt(light.area * kInvPi), Radiance(strength), index});
+      local_lights.push_back(&light);
+      disk_of_light.push_back(static_cast<std::uint32_t>(disks.size()) - 1);
+      bounds.push_back(boundsOf(light));
+    }
+  }
+
+  void addTriangles(std::vector<EmitterBounds>& bounds, bool include_dynamic) {
+    first_triangle.assign(scene.instances.size(), scene::kNone);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+      const scene::Instance& instance = scene.instances[i];
+      const scene::Mesh& mesh = scene.meshes[instance.mesh];
+      const scene::Material& material = scene.materials[mesh.material];
+      if ((instance.dynamic && !include_dynamic) || material.unlit || !(luminance(material.emission) > 0))
+        continue;
+      first_triangle[i] = static_cast<std::uint32_t>(triangles.size());
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        triangles.push_back({scene::worldPosition(scene, {i, t, 0, 0}),
+                             scene::worldPosition(scene, {i, t, 1, 0}),
+                             scene::worldPosition(scene, {i, t, 0, 1}), scene::geometricNormal(scene, i, t),
+                             i, t, material.double_sided});
+    }
+    const std::size_t lights = bounds.size();
+    bounds.resize(lights + triangles.size());
+    parallelFor(triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Triangle& t = triangles[k];
+        const scene::Mesh& mesh = scene.meshes[scene.instances[t.instance].mesh];
+        const float area = 0.5f * glm::length(glm::cross(t.v1 - t.v0, t.v2 - t.v0));
+        EmitterBounds& b = bounds[lights + k];
+        b.box.add(t.v0), b.box.add(t.v1), b.box.add(t.v2);
+        b.axis = t.normal;
+        b.two_sided = t.two_sided;
+        b.intensity =
+            area > 0 ? area * meanEmission(scene, scene.materials[mesh.material], t.instance, t.triangle) : 0;
+        if (!(b.intensity < kInfinity)) b.intensity = 0;
+      }
+    });
+  }
+
+  // The choice between the tree of local emitters (group 0), suns (1 ...) and the environment (last).
+  std::size_t groups() const { return suns.size() + 2; }
+  float estimate(std::size_t group, Point p, Normal n) const {
+    if (group == 0) return tree->importance(p, n);
+    if (group == suns.size() + 1) return kPi * environment.meanLuminance();
+    const Sun& sun = suns[group - 1];
+    if (n == Normal(0)) return luminance(sun.irradiance);
+    const float c = glm::dot(n, sun.to_light), s = std::sqrt(std::max(0.0f, 1.0f - c * c));
+    const float cos_radius = 1.0f - sun.height();
+    // The highest point of the disk.
+    const float highest = c >= cos_radius ? 1.0f : c * cos_radius + s * sun.sine();
+    return luminance(sun.irradiance) * std::max(highest, 0.0f);
+  }
+  struct Groups {
+    float sum = 0;
+    int lit = 0;
+    float probability(float own) const {
+      return own > 0 ? kByEstimate * own / sum + (1.0f - kByEstimate) / static_cast<float>(lit) : 0.0f;
+    }
+  };
+  Groups groupsAt(Point p, Normal n) const {
+    Groups all;
+    for (std::size_t g = 0; g < groups(); ++g)
+      if (const float e = estimate(g, p, n); e > 0) all.sum += e, ++all.lit;
+    return all;
+  }
+  float groupProbability(std::size_t group, Point p, Normal n) const {
+    return groupsAt(p, n).probability(estimate(group, p, n));
+  }
+
+  LightSample sampleSun(const Sun& sun, Vec2 u) const {
+    LightSample s;
+    s.endless = true;
+    s.direction = sun.to_light;
+    s.delta = sun.delta();
+    if (s.delta) {
+      s.value = sun.irradiance, s.pdf = 1.0f;
+      return s;
+    }
+    const float height = u.x * sun.height(), phi = 2 * kPi * u.y;
+    const float sine = std::sqrt(height * (2.0f - height));
+    s.direction =
+        Frame::about(sun.to_light).toWorld({sine * std::cos(phi), sine * std::sin(phi), 1.0f - height});
+    s.value = sun.radiance().rgb, s.pdf = sun.pdf();
+    return s;
+  }
+
+  LightSample sampleLocal(std::uint32_t index, Point p, Vec2 u) const {
+    if (index >= local_lights.size())
+      return sampleTriangleLight(triangles[index - local_lights.size()], p, u);
+    const Light& light = *local_lights[index];
+    LightSample s;
+    if (light.kind == Light::Kind::kArea) {
+      const Disk& disk = disks[disk_of_light[index]];
+      const Vec2 place = disk.radius * squareToDisk(u);
+      const Frame frame = Frame::about(disk.normal);
+      const Point q = disk.centre + place.x * frame.t + place.y * frame.b;
+      const float distance = glm::length(q - p);
+      if (!(distance > 0)) return s;
+      s.direction = (q - p) / distance;
+      s.end = q;
+      const float facing = -glm::dot(disk.normal, s.direction);
+      if (!(facing > 0)) return s;
+      s.value = disk.radiance.rgb;
+      s.pdf = distance * distance / (facing * kPi * disk.radius * disk.radius);
+      return s;
+    }
+    s.delta = true;
+    s.direction = directionTo(light, p);
+    s.end = light.position;
+    s.value = incidentIrradiance(light, p).rgb;
+    s.pdf = s.value == Vec3(0) ? 0.0f : 1.0f;
+    return s;
+  }
+
+  LightSample sampleTriangleLight(const Triangle& t, Point p, Vec2 u) const {
+    LightSample s;
+    const TriangleSample place = sampleTriangle(p, t.v0, t.v1, t.v2, u);
+    if (!(place.pdf > 0)) return s;
+    const Point q = (1 - place.b1 - place.b2) * t.v0 + place.b1 * t.v1 + place.b2 * t.v2;
+    const float distance = glm::length(q - p);
+    if (!(distance > 0)) return s;
+    s.direction = (q - p) / distance;
+    const float facing = -glm::dot(t.normal, s.direction);
+    if (!t.two_sided && !(facing > 0)) return s;
+    const scene::Hit hit{t.instance, t.triangle, place.b1, place.b2};
+    s.value = scene::surfaceAt(scene, hit).emission.rgb * scene::opacityAt(scene, hit);
+    s.end = trace::offsetOrigin(q, facing > 0 ? t.normal : -t.normal);
+    s.pdf = s.value == Vec3(0) ? 0.0f : place.pdf;
+    return s;
+  }
+
+  const scene::Scene& scene;
+  EnvironmentSampler environment;
+  std::vector<Sun> suns;
+  // Local emitters: first the lights, then the triangles; indices of the tree.
+  std::vector<const Light*> local_lights;
+  std::vector<std::uint32_t> disk_of_light;
+  std::vector<Disk> disks;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> first_triangle;  ///< by instance; kNone: does not emit
+  std::unique_ptr<LightTree> tree;
+};
+
+Emitters::Emitters(const scene::Scene& scene, bool include_dynamic)
+    : impl_(std::make_unique<Impl>(scene, include_dynamic)) {}
+Emitters::~Emitters() = default;
+Emitters::Emitters(Emitters&&) noexcept = default;
+
+bool Emitters::empty() const {
+  return impl_->tree->empty() && impl_->suns.empty() && impl_->scene.environment.dark();
+}
+std::size_t Emitters::triangleCount() const { return impl_->triangles.size(); }
+
+LightSample Emitters::sample(Point p, Normal n, Vec2 u, float choice) const {
+  const Impl::Groups all = impl_->groupsAt(p, n);
+  std::size_t group = impl_->groups();
+  float probability = 0.0f;
+  // The last group that is lit takes what rounding leaves over.
+  for (std::size_t g = 0; g < impl_->groups(); ++g) {
+    const float own = all.probability(impl_->estimate(g, p, n));
+    if (!(own > 0)) continue;
+    if (group < impl_->groups()) choice -= probability;
+    group = g, probability = own;
+    if (choice < own) break;
+  }
+  if (!(probability > 0)) return {};
+  const float rest = std::clamp(choice / probability, 0.0f, 0x1.fffffep-1f);
+  LightSample s;
+  if (group == 0) {
+    const LightTree::Choice chosen = impl_->tree->choose(p, n, rest);
+    if (!(chosen.probability > 0)) return {};
+    s = impl_->sampleLocal(chosen.emitter, p, u);
+    s.pdf *= chosen.probability;
+  } else if (group <= impl_->suns.size()) {
+    s = impl_->sampleSun(impl_->suns[group - 1], u);
+  } else {
+    s.direction = impl_->environment.sample(n, u);
+    s.endless = true;
+    s.value = impl_->scene.environment.from(s.direction).rgb;
+    s.pdf = impl_->environment.pdf(n, s.direction);
+  }
+  s.pdf *= probability;
+  return s;
+}
+
+LightSeen Emitters::onSurface(Point p, Normal n, Direction d, const scene::Hit& hit, float distance,
+                              bool back_face) const {
+  const std::uint32_t first = impl_->first_triangle[hit.instance];
+  if (first == scene::kNone || back_face) return {};
+  LightSeen seen{scene::surfaceAt(impl_->scene, hit).emission, 0.0f};
+  const Triangle& t = impl_->triangles[first + hit.triangle];
+  const auto emitter = static_cast<std::uint32_t>(impl_->local_lights.size()) + first + hit.triangle;
+  if (const float chosen = impl_->tree->probability(p, n, emitter); chosen > 0)
+    seen.pdf = impl_->groupProbability(0, p, n) * chosen * trianglePdf(p, t.v0, t.v1, t.v2, d, distance);
+  return seen;
+}
+
+void Emitters::onRay(Point p, Normal n, Direction d, float distance, std::vector<LightSeen>& seen) const {
+  for (const Disk& disk : impl_->disks) {
+    const float facing = -glm::dot(disk.normal, d);
+    if (!(facing > 0)) continue;
+    const float t = -glm::dot(disk.normal, disk.centre - p) / facing;
+    if (!(t > 0 && t < distance)) continue;
+    const Vec3 off = p + t * d - disk.centre;
+    if (glm::dot(off, off) > disk.radius * disk.radius) continue;
+    seen.push_back({disk.radiance, impl_->groupProbability(0, p, n) *
+                                       impl_->tree->probability(p, n, disk.light) * t * t /
+                                       (facing * kPi * disk.radius * disk.radius)});
+  }
+  if (distance < kInfinity) return;
+  for (std::size_t i = 0; i < impl_->suns.size(); ++i) {
+    const Sun& sun = impl_->suns[i];
+    if (sun.delta() || !sun.covers(d)) continue;
+    seen.push_back({sun.radiance(), impl_->groupProbability(i + 1, p, n) * sun.pdf()});
+  }
+  const scene::Environment& environment = impl_->scene.environment;
+  if (environment.dark()) return;
+  seen.push_back({environment.from(d),
+                  impl_->groupProbability(impl_->suns.size() + 1, p, n) * impl_->environment.pdf(n, d)});
+}
+
+}  // namespace relume::transport
