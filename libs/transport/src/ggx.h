@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The GGX microfacet lobe in the local frame of the surface (normal +z), without Fresnel's factor, and how
+// much light it reflects. Sources: relume/transport/bsdf.h.
+#pragma once
+#include "relume/core/vec.h"
+
+namespace relume::transport::ggx {
+
+/// D(h) ([glTF] B.3.2); h unit, h.z > 0.
+float distribution(Vec3 h, float alpha);
+/// Smith's G1 of one direction.
+float masking(float cosine, float alpha);
+/// G2 / (4 cos_i cos_o), height-correlated ([Heitz14] 99).
+float visibility(float cos_i, float cos_o, float alpha);
+/// A normal among those visible from `o` ([DB23]); its density is G1(o) D(h) (o.h) / cos_o.
+Vec3 sampleVisibleNormal(Vec3 o, float alpha, Vec2 u);
+
+/// Directional albedo of the lobe with Schlick's Fresnel factor: F0 * scale + bias; scale + bias is that of a
+/// perfect reflector. From a table of 32 x 32 made at first use; look-ups are right to 0.005.
+struct Reflected {
+  float scale, bias;
+};
+Reflected reflected(float cos_o, float alpha);
+
+}  // namespace relume::transport::ggx
