@@ -43,7 +43,9 @@ bool isFiniteMatrix(const Mat4& m) {
 }  // namespace
 
 Accel::Accel(const scene::Scene& scene, const TracerOptions& options)
-    : scene_(scene), include_dynamic_(options.include_dynamic) {
+    : scene_(scene),
+      include_dynamic_(options.include_dynamic),
+      passing_(options.stop_at_transmission ? Passing::kAlpha : Passing::kAlphaAndTransmission) {
   device_.reset(rtcNewDevice(deviceConfig(options.isa).c_str()));
   if (!device_) {
     throw Error(ErrorCode::kUsage, fmt::format("instruction set \"{}\"", options.isa),
@@ -106,10 +108,12 @@ Accel::GeometryHandle Accel::triangles(const scene::Mesh& mesh, const Mat4* worl
                              sizeof(Point), count);
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(UVec3), mesh.triangles.size());
-  if (needsAlphaFilter(scene_, mesh)) {
+  if (needsAlphaFilter(scene_, mesh, passing_)) {
+    const auto filter = passing_ == Passing::kAlpha ? &alphaFilter<Passing::kAlpha>
+                                                    : &alphaFilter<Passing::kAlphaAndTransmission>;
     rtcSetGeometryUserData(geometry.get(), const_cast<scene::Scene*>(&scene_));
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), &alphaFilter);
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), &alphaFilter);
+    rtcSetGeometryIntersectFilterFunction(geometry.get(), filter);
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter);
   }
   rtcCommitGeometry(geometry.get());
   return geometry;

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "alpha_filter.h"
 #include "embree_api.h"
 #include "relume/core/vec.h"
 #include "relume/trace/tracer.h"
@@ -59,6 +60,7 @@ class Accel {
   std::atomic<std::int64_t> embree_bytes_{0};  // before the device, which reports to it until it is released
   std::uint64_t vertex_bytes_ = 0;
   bool include_dynamic_ = false, needs_traits_ = false;
+  Passing passing_;
   std::vector<InstanceTraits> traits_;
   std::vector<std::vector<Point>> vertices_;  // world space, of copied instances
   Handle<RTCDevice, rtcReleaseDevice> device_;

@@ -5,13 +5,14 @@
 
 namespace relume::trace {
 
-bool needsAlphaFilter(const scene::Scene& scene, const scene::Mesh& mesh) {
+bool needsAlphaFilter(const scene::Scene& scene, const scene::Mesh& mesh, Passing passing) {
   const scene::Material& material = scene.materials[mesh.material];
-  if (material.transmission > 0.0f) return true;
+  if (passing == Passing::kAlphaAndTransmission && material.transmission > 0.0f) return true;
   if (material.alpha_mode == scene::AlphaMode::kOpaque) return false;
   return material.base_colour.a < 1.0f || material.base_colour_texture || !mesh.colours.empty();
 }
 
+template <Passing kPassing>
 void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
   const auto& scene = *static_cast<const scene::Scene*>(arguments->geometryUserPtr);
   const unsigned int n = arguments->N;
@@ -21,10 +22,10 @@ void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
     const unsigned int instance =
         referenced != RTC_INVALID_GEOMETRY_ID ? referenced : RTCHitN_geomID(arguments->hit, n, i);
     const unsigned int triangle = RTCHitN_primID(arguments->hit, n, i);
-    const scene::Material& material = scene.materials[scene.meshes[scene.instances[instance].mesh].material];
-    const float opacity = (1.0f - material.transmission) *
-                          scene::opacityAt(scene, {instance, triangle, RTCHitN_u(arguments->hit, n, i),
-                                                   RTCHitN_v(arguments->hit, n, i)});
+    float opacity = scene::opacityAt(
+        scene, {instance, triangle, RTCHitN_u(arguments->hit, n, i), RTCHitN_v(arguments->hit, n, i)});
+    if constexpr (kPassing == Passing::kAlphaAndTransmission)
+      opacity *= 1.0f - scene.materials[scene.meshes[scene.instances[instance].mesh].material].transmission;
     if (opacity >= 1.0f) continue;
     const std::uint32_t seed = RTCRayN_id(arguments->ray, n, i);
     const std::uint32_t bits = hashCombine(hashCombine(seed, instance), triangle);
@@ -32,5 +33,8 @@ void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
     if (chance >= opacity) arguments->valid[i] = 0;
   }
 }
+
+template void alphaFilter<Passing::kAlphaAndTransmission>(const RTCFilterFunctionNArguments*);
+template void alphaFilter<Passing::kAlpha>(const RTCFilterFunctionNArguments*);
 
 }  // namespace relume::trace

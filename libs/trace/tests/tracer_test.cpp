@@ -313,6 +313,21 @@ TEST(Alpha, BlendPassesRaysInProportion) {
   }
 }
 
+TEST(Alpha, TransmissionPassesRaysUnlessTheyStopAtIt) {
+  constexpr int kSeeds = 20000;
+  scene::Scene scene;
+  addMaterial(scene).transmission = 0.6f;
+  addInstance(scene, addMesh(scene, unitQuad()));
+  const Tracer passing(scene), stopping(scene, {.stop_at_transmission = true});
+  int passed = 0, stopped = 0;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    passed += !passing.occluded(kDown, seed);
+    stopped += static_cast<bool>(stopping.intersect(kDown, seed));
+  }
+  EXPECT_NEAR(passed, 0.6 * kSeeds, 4.0 * std::sqrt(0.6 * 0.4 * kSeeds));
+  EXPECT_EQ(stopped, kSeeds);
+}
+
 // Layers of glass are independent: three of them pass (1 - opacity)^3.
 TEST(Alpha, LayersAreIndependent) {
   constexpr int kSeeds = 20000;

@@ -316,19 +316,20 @@ LightSeen Emitters::onSurface(Point p, Normal n, Direction d, const scene::Hit& 
   return seen;
 }
 
-void Emitters::onRay(Point p, Normal n, Direction d, float distance, std::vector<LightSeen>& seen) const {
+void Emitters::onRay(Point p, Normal n, Direction d, float from, float to,
+                     std::vector<LightSeen>& seen) const {
   for (const Disk& disk : impl_->disks) {
     const float facing = -glm::dot(disk.normal, d);
     if (!(facing > 0)) continue;
     const float t = -glm::dot(disk.normal, disk.centre - p) / facing;
-    if (!(t > 0 && t < distance)) continue;
+    if (!(t > from && t < to)) continue;
     const Vec3 off = p + t * d - disk.centre;
     if (glm::dot(off, off) > disk.radius * disk.radius) continue;
     seen.push_back({disk.radiance, impl_->groupProbability(0, p, n) *
                                        impl_->tree->probability(p, n, disk.light) * t * t /
                                        (facing * kPi * disk.radius * disk.radius)});
   }
-  if (distance < kInfinity) return;
+  if (to < kInfinity) return;
   for (std::size_t i = 0; i < impl_->suns.size(); ++i) {
     const Sun& sun = impl_->suns[i];
     if (sun.delta() || !sun.covers(d)) continue;

@@ -182,7 +182,7 @@ TEST(Emitters, ARayThatMeetsALightKnowsItsDensity) {
     };
     if (hit) compare(emitters.onSurface(p, n, s.direction, hit.where, hit.t, hit.back_face));
     seen.clear();
-    emitters.onRay(p, n, s.direction, hit.t, seen);
+    emitters.onRay(p, n, s.direction, 0, hit.t, seen);
     for (const LightSeen& light : seen) compare(light);
     if (same == kInfinity) continue;  // hidden
     EXPECT_LT(same, 2e-3f);

@@ -54,6 +54,9 @@ struct TracerOptions {
   std::string
       isa;  ///< "", "sse2", "avx", "avx2", "avx512": which kernels Embree uses (bits may differ between them)
   bool include_dynamic = false;  ///< also dynamic instances (pictures)
+  /// Rays meet surfaces of KHR_materials_transmission like any other, instead of passing them by chance: for
+  /// those who know what passes (its colour, what is mirrored).
+  bool stop_at_transmission = false;
 };
 
 class Tracer {
@@ -69,7 +72,7 @@ class Tracer {
 
   /// First hit. Alpha: MASK as the cut-off says; BLEND stochastically, by a hash of (seed of the ray,
   /// triangle), so that the mean over seeds is the opacity. Transmission lets its share of the rays through,
-  /// straight on.
+  /// straight on, unless they stop at it.
   RayHit intersect(const Ray& ray, std::uint32_t alpha_seed = 0) const;
   /// Whether anything lies on the ray.
   bool occluded(const Ray& ray, std::uint32_t alpha_seed = 0) const;

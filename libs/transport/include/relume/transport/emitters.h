@@ -60,9 +60,9 @@ class Emitters {
   /// p.
   LightSeen onSurface(Point p, Normal n, Direction d, const scene::Hit& hit, float distance,
                       bool back_face) const;
-  /// Appends what a ray from p sees that is no surface: disks nearer than `distance` and, where it escapes
-  /// (infinite distance), suns and environment.
-  void onRay(Point p, Normal n, Direction d, float distance, std::vector<LightSeen>& seen) const;
+  /// Appends what a ray from p sees that is no surface: disks between the distances `from` and `to` and,
+  /// where it escapes (`to` is infinite), suns and environment.
+  void onRay(Point p, Normal n, Direction d, float from, float to, std::vector<LightSeen>& seen) const;
 
  private:
   struct Impl;

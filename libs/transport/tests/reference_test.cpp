@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: MIT
+// The reference against closed forms and against itself. Expected values: closed forms are in comments; those
+// of the 2 m room are a converged radiosity solution (empty; error below 0.2 %) and path tracing with 18
+// million paths by another program (with a block; standard error below 0.05 %). A statistical comparison
+// allows 6 of the estimate's own standard errors (16 runs, so Student's t with 15 degrees of freedom: a false
+// alarm in 40,000 per value) and the tolerance of the expected value. Seeds are fixed.
+#include "relume/transport/reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "made_scenes.h"
+#include "relume/core/error.h"
+#include "relume/core/parallel.h"
+#include "relume/core/sampling.h"
+#include "relume/transport/bsdf.h"
+
+namespace relume::transport {
+namespace {
+
+constexpr double kSigmas = 6;
+
+Receiver receiver(Point p, Normal n) { return {p, n, n}; }
+
+ReferenceIrradiance solve(const scene::Scene& scene, std::vector<Receiver> receivers,
+                          const ReferenceOptions& options) {
+  SilentProgress silent;
+  return Reference(scene).irradiance(receivers, options, silent);
+}
+
+void expectE(const ReferenceIrradiance& result, std::size_t i, glm::dvec3 expected, double tolerance,
+             const char* what = "") {
+  EXPECT_LE(result.error[i].rgb.r, 0.01 * expected.r) << what << " point " << i << " is too noisy to tell";
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(result.value[i].rgb[c], expected[c],
+                kSigmas * result.error[i].rgb[c] + tolerance * expected[c])
+        << what << " point " << i << " channel " << c;
+}
+
+/// A box seen from within: six faces, each its own material.
+void addRoomFace(scene::Scene& scene, Vec3 albedo, Point p, Vec3 e1, Vec3 e2, Vec3 emission = Vec3(0)) {
+  made::addMaterial(scene, albedo).emission = emission;
+  scene::Mesh mesh;
+  made::addQuad(mesh, p, e1, e2);
+  made::addInstance(scene, std::move(mesh), static_cast<std::uint32_t>(scene.materials.size()) - 1);
+}
+
+scene::Scene box(Vec3 size, Vec3 albedo, Vec3 emission) {
+  scene::Scene scene;
+  const Vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+  for (const auto& [p, e1, e2] :
+       {std::tuple{Point(0), y, z}, std::tuple{Point(x), z, y}, std::tuple{Point(0), z, x},
+        std::tuple{Point(y), x, z}, std::tuple{Point(0), x, y}, std::tuple{Point(z), y, x}})
+    addRoomFace(scene, albedo, p, e1, e2, emission);
+  return scene;
+}
+
+/// The 2 m room: red and green walls at x = 0 and 2, a lamp in the ceiling, perhaps a block.
+scene::Scene colouredRoom(bool block) {
+  scene::Scene scene;
+  const Vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2), white(0.725f, 0.71f, 0.68f);
+  addRoomFace(scene, {0.63f, 0.065f, 0.05f}, Point(0), y, z);
+  addRoomFace(scene, {0.14f, 0.45f, 0.09f}, x, z, y);
+  addRoomFace(scene, white, Point(0), z, x);
+  addRoomFace(scene, white, y, x, z);
+  addRoomFace(scene, white, Point(0), x, y);
+  // The ceiling around the lamp.
+  const auto ceiling = [&](float x0, float x1, float y0, float y1, Vec3 albedo, Vec3 emission) {
+    addRoomFace(scene, albedo, {x0, y0, 2}, {0, y1 - y0, 0}, {x1 - x0, 0, 0}, emission);
+  };
+  ceiling(0, 2, 0, 0.75f, white, Vec3(0)), ceiling(0, 2, 1.25f, 2, white, Vec3(0));
+  ceiling(0, 0.75f, 0.75f, 1.25f, white, Vec3(0)), ceiling(1.25f, 2, 0.75f, 1.25f, white, Vec3(0));
+  ceiling(0.75f, 1.25f, 0.75f, 1.25f, Vec3(0), {17, 12, 4});
+  if (block) {
+    made::addMaterial(scene, white);
+    scene::Mesh mesh;
+    made::addBox(mesh, {0.35f, 1.0f, 0}, {0.95f, 1.6f, 1.2f});
+    made::addInstance(scene, std::move(mesh), static_cast<std::uint32_t>(scene.materials.size()) - 1);
+  }
+  return scene;
+}
+
+scene::Scene floor(float z = -1) {
+  scene::Mesh mesh;
+  made::addQuad(mesh, {-50, -50, z}, {100, 0, 0}, {0, 100, 0});
+  return made::sceneOf(std::move(mesh));
+}
+
+trace::Ray along(Point from, Point to) { return {from, glm::normalize(to - from)}; }
+
+/// Mean radiance of one ray, as a 4 x 4 picture all of whose pixels are that ray, and its standard error.
+struct Seen {
+  glm::dvec3 mean{0};
+  double error = 0;
+};
+Seen look(const scene::Scene& scene, trace::Ray ray, ReferenceOptions options) {
+  SilentProgress silent;
+  const ReferenceImage image = Reference(scene).image(
+      4, 4, [&](Vec2) { return ray; }, options, silent);
+  Seen seen;
+  for (std::size_t i = 0; i < 16; ++i) {
+    seen.mean += glm::dvec3(image.radiance.data[3 * i], image.radiance.data[3 * i + 1],
+                            image.radiance.data[3 * i + 2]) /
+                 16.0;
+    seen.error += image.error.data[i] * image.error.data[i] / 256.0;
+  }
+  seen.error = std::sqrt(seen.error);
+  return seen;
+}
+
+TEST(Reference, APointLightIsExact) {
+  scene::Scene scene = floor();
+  Light& light = scene.lights.emplace_back();
+  light.position = {1, 1.5f, 2}, light.intensity = 50;
+  ReferenceOptions options{.samples = 16, .max_bounces = 0};
+  const auto e = solve(scene, {receiver({0.3f, -0.2f, 0}, {0, 0, 1})}, options);
+  EXPECT_NEAR(e.value[0].rgb.r, 4.987873806451968, 1e-5);
+  EXPECT_EQ(e.samples, 16u);
+}
+
+TEST(Reference, LambertsFormulaWithAndWithoutAShade) {
+  scene::Scene scene = floor();
+  addRoomFace(scene, Vec3(0), {-0.5f, -0.5f, 2}, {0, 1, 0}, {1, 0, 0}, Vec3(12));
+  const std::vector<Receiver> points = {receiver({0, 0, 0}, {0, 0, 1}), receiver({1.5f, 0.3f, 0}, {0, 0, 1}),
+                                        receiver({0.2f, -2.5f, 0}, {0, 0, 1}),
+                                        receiver({0, 0, 1.7f}, {0, 0, 1})};
+  const double exact[] = {2.7700415727620493, 1.1984836672291261, 0.46523697850323253, 29.17512149265842};
+  for (const Estimator estimator : {Estimator::kMis, Estimator::kLightOnly, Estimator::kBsdfOnly}) {
+    const auto e = solve(scene, points,
+                         {.samples = estimator == Estimator::kBsdfOnly ? 1u << 18 : 1u << 12,
+                          .estimator = estimator,
+                          .part = Part::kDirect});
+    for (std::size_t i = 0; i < points.size(); ++i) expectE(e, i, glm::dvec3(exact[i]), 1e-4);
+    if (estimator == Estimator::kMis) {
+      EXPECT_LT(e.error[0].rgb.r, 0.002f * e.value[0].rgb.r);
+    }
+  }
+  // A half-plane at height 0.8 that ends at x = 0.03: 1.1690964628341654.
+  addRoomFace(scene, Vec3(0), {-200, -200, 0.8f}, {200.03f, 0, 0}, {0, 400, 0});
+  const auto shaded = solve(scene, {points[0]}, {.samples = 16384, .part = Part::kDirect});
+  expectE(shaded, 0, glm::dvec3(1.1690964628341654), 2e-4);
+}
+
+TEST(Reference, AFurnaceAndItsBounces) {
+  // Exitance 2, reflectance 0.75: E = B = 2 / (1 - 0.75) = 8; after k bounces 8 (1 - 0.75^(k + 1)).
+  const scene::Scene scene = box({4, 3, 2.5f}, Vec3(0.75f), Vec3(2 / kPi));
+  const std::vector<Receiver> points = {receiver({1, 1, 0}, {0, 0, 1}),
+                                        receiver({4, 0.2f, 2.3f}, {-1, 0, 0})};
+  for (const int bounces : {0, 1, 2, 7, ReferenceOptions::kUnlimited}) {
+    const auto e =
+        solve(scene, points, {.samples = 16384, .max_bounces = bounces, .materials = Materials::kLambert});
+    const double exact = bounces < 0 ? 8 : 8 * (1 - std::pow(0.75, bounces + 1));
+    for (std::size_t i = 0; i < points.size(); ++i) expectE(e, i, glm::dvec3(exact), 1e-4);
+  }
+}
+
+/// The inside of a sphere of `radius` without the part within `cap` radians of +z.
+scene::Scene cavity(float radius, float cap, Vec3 albedo) {
+  constexpr std::uint32_t kRows = 96, kColumns = 192;
+  scene::Mesh mesh;
+  for (std::uint32_t i = 0; i <= kRows; ++i)
+    for (std::uint32_t j = 0; j <= kColumns; ++j) {
+      const double theta = cap + (M_PI - cap) * i / kRows, phi = 2 * M_PI * (j % kColumns) / kColumns;
+      mesh.positions.push_back(
+          radius * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
+    }
+  for (std::uint32_t i = 0; i < kRows; ++i)
+    for (std::uint32_t j = 0; j < kColumns; ++j) {
+      const std::uint32_t a = i * (kColumns + 1) + j, b = a + kColumns + 1;
+      if (i + 1 < kRows) mesh.triangles.emplace_back(a, b + 1, b);
+      if (i > 0 || cap > 0) mesh.triangles.emplace_back(a, a + 1, b + 1);
+    }
+  mesh.flat_normals = true;
+  mesh.normals.assign(mesh.positions.size(), Normal(0, 0, 1));
+  scene::Scene scene = made::sceneOf(std::move(mesh));
+  scene.materials[0].base_colour = Vec4(albedo, 1);
+  return scene;
+}
+
+TEST(Reference, AnIntegratingSphere) {
+  // Direct by the inverse square; bounce k gives rho^k I / R^2 everywhere: 1.5, 0.9 ..., together 3.75.
+  scene::Scene scene = cavity(2, 0, Vec3(0.6f));
+  Light& light = scene.lights.emplace_back();
+  light.position = {0.5f, 0, 0.8f}, light.intensity = 10;
+  const std::vector<Receiver> points = {receiver({1.999f, 0, 0}, {-1, 0, 0})};
+  ReferenceOptions options{.samples = 64, .materials = Materials::kLambert, .part = Part::kDirect};
+  expectE(solve(scene, points, options), 0, glm::dvec3(3.0531243639324246), 2e-3);
+  options.samples = 32768, options.part = Part::kIndirect;
+  expectE(solve(scene, points, options), 0, glm::dvec3(3.75), 3e-3);
+  options.max_bounces = 1;
+  expectE(solve(scene, points, options), 0, glm::dvec3(1.5), 3e-3);
+}
+
+TEST(Reference, ACavityUnderASky) {
+  // Open to the share f = 0.3 of its sphere: E = pi f / (1 - rho (1 - f)) everywhere.
+  scene::Scene scene = cavity(1, std::acos(0.4f), {0.8f, 0.5f, 0.2f});
+  scene.environment.radiance = Radiance(1.0f);
+  const float t = 2.5f;
+  const Vec3 d(std::sin(t), 0, std::cos(t));
+  for (const Estimator estimator : {Estimator::kMis, Estimator::kBsdfOnly, Estimator::kLightOnly})
+    expectE(solve(scene, {receiver(0.999f * d, -d)},
+                  {.samples = 16384, .estimator = estimator, .materials = Materials::kLambert}),
+            0, {2.1419949910839495, 1.449965840118366, 1.095904414042951}, 3e-3);
+}
+
+TEST(Reference, TheColouredRoomAgreesWithRadiosity) {
+  struct Case {
+    Receiver at;
+    glm::dvec3 direct, total;
+  };
+  const Case cases[] = {
+      {receiver({1, 1, 0}, {0, 0, 1}),
+       {1.04083794, 0.73470913, 0.24490304},
+       {1.81553064, 1.15647503, 0.33666522}},
+      {receiver({0.3f, 0.4f, 0}, {0, 0, 1}),
+       {0.71681264, 0.50598540, 0.16866180},
+       {1.53281411, 0.83894002, 0.24763873}},
+      {receiver({0, 1, 1}, {1, 0, 0}),
+       {1.03933311, 0.73364690, 0.24454897},
+       {1.84927348, 1.28535091, 0.37032909}},
+      {receiver({2, 0.6f, 1.5f}, {-1, 0, 0}),
+       {1.09853639, 0.77543745, 0.25847915},
+       {2.00218667, 1.22754678, 0.37321879}},
+      {receiver({1, 2, 0.5f}, {0, -1, 0}),
+       {0.58701426, 0.41436301, 0.13812100},
+       {1.45483491, 0.90399898, 0.25304562}},
+      {receiver({0.3f, 1, 2}, {0, 0, -1}), {0, 0, 0}, {1.00965678, 0.41351443, 0.10331405}}};
+  const scene::Scene room = colouredRoom(false);
+  std::vector<Receiver> points;
+  for (const Case& c : cases) points.push_back(c.at);
+  ReferenceOptions options{.samples = 8192, .materials = Materials::kLambert};
+  const auto total = solve(room, points, options);
+  options.part = Part::kDirect;
+  const auto direct = solve(room, points, options);
+  options.part = Part::kIndirect;
+  const auto indirect = solve(room, points, options);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    expectE(total, i, cases[i].total, 2e-3, "total");
+    expectE(direct, i, cases[i].direct, 1e-4, "direct");
+    expectE(indirect, i, cases[i].total - cases[i].direct, 5e-3, "indirect");
+    EXPECT_LT(total.error[i].rgb.g, 0.01f * total.value[i].rgb.g);
+  }
+}
+
+TEST(Reference, TheRoomWithABlockAgreesWithAnotherPathTracer) {
+  const auto e = solve(colouredRoom(true),
+                       {receiver({1.3f, 0.9f, 0}, {0, 0, 1}), receiver({0.2f, 1.3f, 0}, {0, 0, 1}),
+                        receiver({0.6f, 2, 0.6f}, {0, -1, 0}), receiver({0.65f, 1.3f, 1.2f}, {0, 0, 1})},
+                       {.samples = 16384, .materials = Materials::kLambert});
+  expectE(e, 0, {1.63762720, 1.17615725, 0.32760439}, 1e-3);
+  expectE(e, 1, {0.49434045, 0.11661503, 0.03026759}, 2e-3);
+  expectE(e, 2, {0.74623925, 0.43226462, 0.11147470}, 2e-3);
+  expectE(e, 3, {4.44208196, 2.95670403, 0.95071046}, 1e-3);
+}
+
+TEST(Reference, EstimatorsAgreeOnGlossySurfaces) {
+  scene::Scene scene = colouredRoom(true);
+  for (scene::Material& m : scene.materials) m.roughness = 0.6f;
+  scene.materials.back().metallic = 1, scene.materials.back().roughness = 0.4f;
+  scene.materials[4].roughness = 0.3f;
+  const trace::Ray rays[] = {along({1, 0.1f, 1}, {0.65f, 1, 0.5f}), along({1, 0.1f, 1}, {1.2f, 1.5f, 0})};
+  for (const trace::Ray& ray : rays) {
+    const Seen mis = look(scene, ray, {.samples = 2048}),
+               bsdf = look(scene, ray, {.samples = 8192, .estimator = Estimator::kBsdfOnly}),
+               light = look(scene, ray, {.samples = 8192, .estimator = Estimator::kLightOnly});
+    EXPECT_GT(mis.mean.r, 0.05);
+    // 64 runs each: normal, 6 standard errors of the difference of luminances.
+    const auto differ = [](const Seen& a, const Seen& b) {
+      return std::abs(luminance(Vec3(a.mean)) - luminance(Vec3(b.mean))) / std::hypot(a.error, b.error);
+    };
+    EXPECT_LT(differ(mis, bsdf), kSigmas);
+    EXPECT_LT(differ(mis, light), kSigmas);
+    EXPECT_LT(mis.error, bsdf.error);
+  }
+}
+
+TEST(Reference, AWhiteMetalUnderAWhiteSkyCannotBeSeen) {
+  for (const float roughness : {0.0f, 0.15f, 0.5f, 1.0f}) {
+    scene::Scene scene = floor(0);
+    scene.materials[0].metallic = 1, scene.materials[0].roughness = roughness;
+    scene.environment.radiance = Radiance(1.0f);
+    for (const Point eye : {Point(0, 0, 3), Point(4, 0, 1)}) {
+      const Seen seen = look(scene, along(eye, Point(0)), {.samples = 512});
+      EXPECT_NEAR(seen.mean.r, 1, 0.01 + kSigmas * seen.error) << roughness;
+    }
+  }
+}
+
+TEST(Reference, ARoomOfMirrorsKeepsItsEnergy) {
+  // Walls of white metal, one of which emits: no light is lost, so every bounce adds as much as the first on
+  // the whole; limited to k bounces the mean of E over the walls is k + 1 times the direct one.
+  scene::Scene scene = box(Vec3(2), Vec3(1), Vec3(0));
+  for (scene::Material& m : scene.materials) m.metallic = 1, m.roughness = 0.3f;
+  scene.materials[5].emission = Vec3(1);
+  std::vector<Receiver> points;
+  constexpr std::uint32_t kPoints = 512;
+  const Vec3 corner[6] = {{0, 0, 0}, {2, 0, 0}, {0, 0, 0}, {0, 2, 0}, {0, 0, 0}, {0, 0, 2}};
+  const Normal normal[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (int face = 0; face < 6; ++face)
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+      const Vec2 u = 2.0f * sobol2(i, 3);
+      const int axis = face / 2;
+      Point p = corner[face];
+      p[(axis + 1) % 3] += u.x, p[(axis + 2) % 3] += u.y;
+      points.push_back(receiver(p, normal[face]));
+    }
+  for (const int bounces : {0, 3}) {
+    const auto e = solve(scene, points, {.samples = 32, .max_bounces = bounces});
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      sum += e.value[i].rgb.r, squares += e.error[i].rgb.r * e.error[i].rgb.r;
+    // Power pi L A of one face of six; the compensated lobe is right to half a percent a bounce.
+    const double exact = (bounces + 1) * M_PI / 6, count = static_cast<double>(points.size());
+    EXPECT_NEAR(sum / count, exact, kSigmas * std::sqrt(squares) / count + (0.003 + 0.005 * bounces) * exact);
+  }
+}
+
+TEST(Reference, PanesTintAndDim) {
+  scene::Scene scene = floor(-1);
+  Light& light = scene.lights.emplace_back();
+  light.position = {0.4f, 0.2f, 2}, light.intensity = 8;
+  const std::vector<Receiver> points = {receiver({0.4f, 0.2f, 0}, {0, 0, 1})};
+  const std::size_t pane = scene.materials.size();
+  addRoomFace(scene, {0.5f, 1, 1}, {-9, -9, 1}, {18, 0, 0}, {0, 18, 0});
+  scene.materials[pane].transmission = 0.75f, scene.materials[pane].roughness = 0.2f;
+  ReferenceOptions options{.samples = 256, .part = Part::kDirect};
+  scene::Surface glass;
+  glass.base_colour = {0.5f, 1, 1, 1}, glass.metallic = 0, glass.roughness = 0.2f;
+  const Vec3 passes = Bsdf::metallicRoughness({0, 0, 1}, glass, 0.75f, {0, 0, 1}).transmittance();
+  expectE(solve(scene, points, options), 0, glm::dvec3(2.0f * passes), 1e-4);
+  options.materials = Materials::kLambert;
+  expectE(solve(scene, points, options), 0, 2.0 * 0.75 * glm::dvec3(0.5, 1, 1), 1e-4);
+  // Light found by chance passes like light that is sampled.
+  scene.lights.clear();
+  scene.environment.radiance = Radiance(1.0f);
+  options.materials = Materials::kFull, options.samples = 8192;
+  options.estimator = Estimator::kLightOnly;
+  const auto sampled = solve(scene, points, options);
+  options.estimator = Estimator::kBsdfOnly;
+  expectE(solve(scene, points, options), 0, glm::dvec3(sampled.value[0].rgb), 2e-3);
+  EXPECT_LT(sampled.value[0].rgb.r, 0.55f * sampled.value[0].rgb.g);
+  // Alpha lets its share through.
+  scene.environment.radiance = Radiance(0.0f);
+  scene.lights.push_back({}), scene.lights[0].position = {0.4f, 0.2f, 2}, scene.lights[0].intensity = 8;
+  scene.materials[pane].transmission = 0, scene.materials[pane].base_colour.a = 0.25f;
+  scene.materials[pane].alpha_mode = scene::AlphaMode::kBlend;
+  options.estimator = Estimator::kMis;
+  expectE(solve(scene, points, options), 0, glm::dvec3(2 * 0.75), 1e-4);
+}
+
+TEST(Reference, LampsWithoutABodyAreSeenAndMirrored) {
+  scene::Scene scene = floor(0);
+  scene.materials[0].metallic = 1, scene.materials[0].roughness = 0;
+  Light& lamp = scene.lights.emplace_back();
+  lamp.kind = Light::Kind::kArea, lamp.area = 1, lamp.intensity = 5;
+  lamp.position = {1, 0, 2}, lamp.direction = {0, 0, -1};
+  EXPECT_NEAR(look(scene, along({-1, 0, 1}, {1, 0, 2}), {.samples = 4}).mean.r, 5, 1e-4);
+  const Seen mirrored = look(scene, along({-1, 0, 2}, {0, 0, 0}), {.samples = 256});
+  EXPECT_NEAR(mirrored.mean.r, 5, 0.03 + kSigmas * mirrored.error);
+  // From behind there is nothing.
+  EXPECT_LT(look(scene, along({-1, 0, 3}, {1.2f, 0, 2}), {.samples = 4, .max_bounces = 0}).mean.r, 1e-6);
+}
+
+TEST(Reference, UnlitShowsItsColourToTheEyeAlone) {
+  scene::Scene scene = floor(0);
+  scene.materials[0].unlit = true, scene.materials[0].base_colour = {0.2f, 0.4f, 0.6f, 1};
+  EXPECT_NEAR(look(scene, along({0, 0, 1}, {0, 0, 0}), {.samples = 4}).mean.g, 0.4, 1e-6);
+  EXPECT_EQ(solve(scene, {receiver({0, 0, 1}, {0, 0, -1})}, {.samples = 64}).value[0].rgb, Vec3(0));
+}
+
+TEST(Reference, BackgroundIsSeenButDoesNotShine) {
+  scene::Scene scene = floor(0);
+  const ReferenceOptions options{.samples = 16, .background = {0.1f, 0.2f, 0.3f}};
+  EXPECT_NEAR(look(scene, along({0, 0, 1}, {0, 0, 2}), options).mean.b, 0.3, 1e-6);
+  EXPECT_EQ(look(scene, along({0, 0, 1}, {0, 0, 0}), options).mean.b, 0);
+}
+
+TEST(Reference, ItsErrorBarsHold) {
+  // 256 estimates of one value by 64 paths each: the mean square of (value - truth) / error has the
+  // expectation 15 / 13 and a standard error of about 0.11.
+  const scene::Scene room = colouredRoom(true);
+  const std::vector<Receiver> points(256, receiver({1.3f, 0.9f, 0}, {0, 0, 1}));
+  const auto e = solve(room, points, {.samples = 64, .materials = Materials::kLambert});
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double z = (e.value[i].rgb.g - 1.17615725) / e.error[i].rgb.g;
+    sum += z * z;
+  }
+  EXPECT_NEAR(sum / 256, 15.0 / 13, 0.6);
+}
+
+TEST(Reference, ATargetErrorIsReached) {
+  const scene::Scene room = colouredRoom(true);
+  const std::vector<Receiver> points = {receiver({1.3f, 0.9f, 0}, {0, 0, 1}),
+                                        receiver({0.65f, 1.3f, 1.2f}, {0, 0, 1})};
+  const auto e = solve(room, points, {.samples = 1 << 16, .target_error = 0.02f});
+  EXPECT_LT(e.samples, 2u << 14);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_LT(luminance(e.error[i].rgb), 0.025f * luminance(e.value[i].rgb));
+}
+
+TEST(Reference, BitsDoNotDependOnThreads) {
+  const scene::Scene room = colouredRoom(true);
+  SilentProgress silent;
+  const Reference reference(room);
+  const auto render = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return reference.image(
+        37, 21,
+        [](Vec2 p) {
+          return along({1, 0.05f, 1}, {p.x / 18, 2, 2 - p.y / 10});
+        },
+        {.samples = 64, .target_error = 0.2f}, silent);
+  };
+  const ReferenceImage one = render(1), many = render(0);
+  EXPECT_EQ(one.radiance.data, many.radiance.data);
+  EXPECT_EQ(one.error.data, many.error.data);
+  EXPECT_EQ(one.samples, many.samples);
+}
+
+TEST(Reference, CanBeInterrupted) {
+  SilentProgress progress;
+  progress.cancel();
+  const scene::Scene scene = floor(0);
+  const std::vector<Receiver> points(4, receiver({0, 0, 1}, {0, 0, 1}));
+  EXPECT_THROW(Reference(scene).irradiance(points, {}, progress), Error);
+}
+
+}  // namespace
+}  // namespace relume::transport
