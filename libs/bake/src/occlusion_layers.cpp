@@ -62,7 +62,7 @@ Albedo roundedMeanAlbedo(const atlas::Texels& texels) {
 
 Digest keyOf(const OcclusionOptions& o, const RowLayout& layout) {
   return Hasher()
-      .add("occlusion 2")  // raise when the solver's results change
+      .add("occlusion 3")  // raise when the solver's results change
       .add(o.kind)
       .add(o.weight.shape)
       .add(o.weight.tau)
@@ -72,6 +72,7 @@ Digest keyOf(const OcclusionOptions& o, const RowLayout& layout) {
       .add(o.min_samples)
       .add(o.max_samples)
       .add(o.target_error)
+      .add(o.smoothed)
       .add(o.seed)
       .add(layout.channels)
       .digest();
@@ -126,6 +127,7 @@ LayerJob makeJob(const LayerContext& context, const Parameters& parameters, Occl
       .min_samples = context.quality.min_samples,
       .max_samples = context.quality.max_samples,
       .target_error = context.quality.target_error,
+      .smoothed = context.quality.filter,
       .seed = context.seed,
   };
   const trace::Tracer& tracer = context.tracer;
@@ -134,11 +136,10 @@ LayerJob makeJob(const LayerContext& context, const Parameters& parameters, Occl
   job.solver.row = layout.size();
   job.solver.reach = weight.limit;
   job.solver.key = keyOf(options, layout);
-  job.solver.solve = [=, &tracer, &texels](std::span<const std::uint32_t> which, std::span<float> rows,
-                                           Progress& progress) {
+  const auto solver = std::make_shared<transport::OcclusionSolver>(tracer, texels, options);
+  job.solver.solve = [=](std::span<const std::uint32_t> which, std::span<float> rows, Progress& progress) {
     if (which.empty()) return std::uint64_t{0};
-    const transport::OcclusionResult result =
-        transport::solveOcclusion(tracer, texels, options, progress, which);
+    const transport::OcclusionResult result = solver->solve(progress, which);
     const auto row = static_cast<std::size_t>(layout.size());
     for (std::size_t i = 0; i < which.size(); ++i) {
       float* r = rows.data() + i * row;

@@ -153,7 +153,7 @@ void solver(benchmark::State& state, const std::string& where, bool any_hit, flo
   const trace::Tracer tracer(setting.scene);
   OcclusionOptions options;
   options.weight = {any_hit ? Shape::kStep : Shape::kExponential, 1.0f, limit};
-  options.max_samples = samples;
+  options.min_samples = options.max_samples = samples;
   SilentProgress silent;
   const double start = cpuSeconds();
   double rays = 0;
@@ -188,7 +188,7 @@ const bool kRegistered = [] {
             where + (any_hit ? ".occluded." : ".intersect.") + (limit < kInfinity ? "2m" : "endless");
         benchmark::RegisterBenchmark(("transport.bare." + name).c_str(),
                                      [=](benchmark::State& s) { bare(s, where, any_hit, limit); });
-        for (const std::uint32_t samples : {64u, 256u}) {
+        for (const std::uint32_t samples : {16u, 64u, 256u}) {
           benchmark::RegisterBenchmark(
               ("transport.solver." + name + "." + std::to_string(samples)).c_str(),
               [=](benchmark::State& s) { solver(s, where, any_hit, limit, samples); });

@@ -13,6 +13,7 @@
 #include "error_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -32,6 +33,13 @@ std::uint32_t compact(std::uint32_t x) {
   x = (x | (x >> 1)) & 0x3333u;
   x = (x | (x >> 2)) & 0x0f0fu;
   return (x | (x >> 4)) & 0x00ffu;
+}
+
+/// The inverse: bits of x at even places.
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | (x << 4)) & 0x0f0fu;
+  x = (x | (x << 2)) & 0x3333u;
+  return (x | (x << 1)) & 0x5555u;
 }
 
 }  // namespace
@@ -61,9 +69,46 @@ float netStandardError(std::span<const float> values, std::span<const std::uint1
     }
   }
   const float blocks = static_cast<float>((width - 1) * (height - 1)), cells = static_cast<float>(n);
-  const float variance = squares * 0.25f * cells / blocks;  // of the sum
-  const float unseen = kUnseen / cells, k = static_cast<float>(kept);
-  return std::sqrt(kNet * kNet * variance / (k * k) + unseen * unseen);
+  return standardErrorOf(squares * 0.25f * cells / blocks, kept, n);
+}
+
+void addNetVariances(std::span<const float> values, std::span<const float, 16> mean, std::span<float> scratch,
+                     std::span<float, 16> variance) {
+  constexpr std::size_t kColumns = 16;
+  const auto n = static_cast<std::uint32_t>(values.size() / kColumns);
+  RELUME_CHECK(std::has_single_bit(n) && scratch.size() >= values.size());
+  const auto bits = static_cast<std::uint32_t>(std::countr_zero(n));
+  const std::uint32_t width = 1u << ((bits + 1) / 2), height = 1u << (bits / 2);
+  if (height < 2) {  // too few to tell: as if nothing were known
+    for (float& v : variance) v += static_cast<float>(n * n);
+    return;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    scratch[i] = values[i] < 0.0f ? 0.0f : values[i] - mean[i % kColumns];
+  // The lowest bit of a slot is of x where x has one more bit than y.
+  const std::uint32_t shift_x = bits % 2 == 0 ? 1 : 0;
+  const auto slot = [&](std::uint32_t x, std::uint32_t y) {
+    return scratch.data() +
+           static_cast<std::size_t>((spread(x) << shift_x) | (spread(y) << (1 - shift_x))) * kColumns;
+  };
+  std::array<float, kColumns> squares{};
+  for (std::uint32_t y = 0; y + 1 < height; ++y) {
+    for (std::uint32_t x = 0; x + 1 < width; ++x) {
+      const float *r00 = slot(x, y), *r01 = slot(x + 1, y), *r10 = slot(x, y + 1), *r11 = slot(x + 1, y + 1);
+      for (std::size_t c = 0; c < kColumns; ++c) {
+        const float d = r00[c] - r01[c] - r10[c] + r11[c];
+        squares[c] += d * d;
+      }
+    }
+  }
+  const float scale = 0.25f * static_cast<float>(n) / static_cast<float>((width - 1) * (height - 1));
+  for (std::size_t c = 0; c < kColumns; ++c) variance[c] += squares[c] * scale;
+}
+
+float standardErrorOf(float variance, std::uint32_t kept, std::uint32_t n) {
+  if (kept == 0) return 1.0f;
+  const float unseen = kUnseen / static_cast<float>(n), k = static_cast<float>(kept);
+  return std::min(1.0f, std::sqrt(kNet * kNet * variance / (k * k) + unseen * unseen));
 }
 
 }  // namespace relume::transport

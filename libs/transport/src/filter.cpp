@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Edge-aware smoothing of texel values: a joint bilateral filter. A neighbour's weight is the product of
-//   a Gaussian of its distance in texels,
+//   a flat window of 2 radius x 2 radius texels (half weights at its rim),
 //   max(0, n_i . n_j)^normal_power, 0 across a crease,
 //   a fall-off with its distance from the texel's plane: on a curved chart neighbours bend away, on a stepped
 //   one they jump, a fall-off with the difference of the values, measured in their standard errors: what
@@ -21,6 +21,13 @@ namespace {
 constexpr float kCreaseCosine = 0.9f;     // 26 degrees between the normals of neighbouring texels
 constexpr float kPlaneTolerance = 0.25f;  // of the distance between the texels
 
+float power(float base, int exponent) {
+  float result = 1.0f;
+  for (; exponent > 0; exponent >>= 1, base *= base)
+    if (exponent & 1) result *= base;
+  return result;
+}
+
 class Filter {
  public:
   Filter(const atlas::Texels& texels, std::span<const float> error, std::span<const std::uint8_t> valid,
@@ -30,6 +37,8 @@ class Filter {
         valid_(valid),
         channels_(static_cast<std::size_t>(channels)),
         options_(options),
+        width_(texels.width),
+        height_(texels.height),
         point_of_(static_cast<std::size_t>(texels.pages) * static_cast<std::size_t>(texels.height) *
                       static_cast<std::size_t>(texels.width),
                   scene::kNone) {
@@ -40,20 +49,26 @@ class Filter {
 
   /// The filtered values of point i; in: [points][channels], out: [channels].
   void apply(std::size_t i, std::span<const float> in, float* out) const {
-    const float* centre = &in[i * channels_];
-    std::copy_n(centre, channels_, out);
+    std::copy_n(&in[i * channels_], channels_, out);
     if (!usable(i)) return;
     const int radius = options_.radius;
-    const float falloff = -2.0f / static_cast<float>(radius * radius);
+    const std::uint32_t texel = texels_.points[i].texel;
+    const auto x = static_cast<int>(texel % static_cast<std::uint32_t>(width_));
+    const auto y =
+        static_cast<int>(texel / static_cast<std::uint32_t>(width_) % static_cast<std::uint32_t>(height_));
+    const std::uint32_t* centre = &point_of_[texel];
+    const int reach_x = std::min({radius, x, width_ - 1 - x}),
+              reach_y = std::min({radius, y, height_ - 1 - y});
     float total = 1.0f;
-    for (int dy = 0; dy <= radius; ++dy) {
-      for (int dx = dy == 0 ? 1 : -radius; dx <= radius; ++dx) {
-        const std::uint32_t a = neighbour(i, dx, dy), b = neighbour(i, -dx, -dy);
+    for (int dy = 0; dy <= reach_y; ++dy) {
+      for (int dx = dy == 0 ? 1 : -reach_x; dx <= reach_x; ++dx) {
+        const std::uint32_t a = centre[dy * width_ + dx], b = centre[-dy * width_ - dx];
         if (a == scene::kNone || b == scene::kNone) continue;
-        const float weight = std::min(geometry(i, a), geometry(i, b)) *
-                             std::min(likeness(i, a, in), likeness(i, b, in)) *
-                             std::exp(falloff * static_cast<float>(dx * dx + dy * dy));
+        float weight = std::min(likeness(i, a, in), likeness(i, b, in));
+        if (weight > 0.0f) weight *= std::min(geometry(i, a), geometry(i, b));
         if (weight <= 0.0f) continue;
+        if (dy == radius) weight *= 0.5f;
+        if (dx == radius || dx == -radius) weight *= 0.5f;
         for (std::size_t c = 0; c < channels_; ++c)
           out[c] += weight * (in[a * channels_ + c] + in[b * channels_ + c]);
         total += 2.0f * weight;
@@ -65,29 +80,18 @@ class Filter {
  private:
   bool usable(std::size_t i) const { return valid_.empty() || valid_[i] != 0; }
 
-  std::uint32_t neighbour(std::size_t i, int dx, int dy) const {
-    const auto width = static_cast<std::int64_t>(texels_.width),
-               height = static_cast<std::int64_t>(texels_.height);
-    const std::int64_t texel = texels_.points[i].texel;
-    const std::int64_t x = texel % width + dx, row = texel / width + dy, page = texel / (width * height);
-    if (x < 0 || x >= width || row < page * height || row >= (page + 1) * height) return scene::kNone;
-    const std::uint32_t found = point_of_[static_cast<std::size_t>(row * width + x)];
-    return found != scene::kNone && texels_.points[found].chart == texels_.points[i].chart ? found
-                                                                                           : scene::kNone;
-  }
-
   float geometry(std::size_t i, std::size_t j) const {
     const atlas::SurfacePoint &p = texels_.points[i], &q = texels_.points[j];
+    if (p.chart != q.chart) return 0.0f;
     const float cosine = glm::dot(p.shading_normal, q.shading_normal);
     if (cosine < kCreaseCosine || glm::dot(p.geometric_normal, q.geometric_normal) < kCreaseCosine)
       return 0.0f;
     const Vec3 between = q.position - p.position;
-    const float apart = glm::length(between);
-    if (apart == 0.0f) return 1.0f;
-    const float off = std::max(std::abs(glm::dot(between, p.geometric_normal)),
-                               std::abs(glm::dot(between, q.geometric_normal)));
-    const float step = off / (kPlaneTolerance * apart);
-    return step >= 1.0f ? 0.0f : (1.0f - step * step) * std::pow(cosine, options_.normal_power);
+    const float apart2 = glm::dot(between, between);
+    if (apart2 == 0.0f) return 1.0f;
+    const float off_p = glm::dot(between, p.geometric_normal), off_q = glm::dot(between, q.geometric_normal);
+    const float step2 = std::max(off_p * off_p, off_q * off_q) / (kPlaneTolerance * kPlaneTolerance * apart2);
+    return step2 >= 1.0f ? 0.0f : (1.0f - step2) * power(std::min(cosine, 1.0f), options_.normal_power);
   }
 
   float likeness(std::size_t i, std::size_t j, std::span<const float> in) const {
@@ -106,6 +110,7 @@ class Filter {
   const std::span<const std::uint8_t> valid_;
   const std::size_t channels_;
   const FilterOptions options_;
+  const int width_, height_;
   std::vector<std::uint32_t> point_of_;  // by texel
 };
 
@@ -115,7 +120,7 @@ void filterTexels(const atlas::Texels& texels, std::span<const float> error,
                   std::span<const std::uint8_t> valid, int channels, std::span<float> values,
                   const FilterOptions& options) {
   const std::size_t points = texels.points.size();
-  RELUME_CHECK(channels > 0 && options.radius > 0);
+  RELUME_CHECK(channels > 0 && options.radius > 0 && options.normal_power >= 0);
   RELUME_CHECK_EQ(values.size(), points * static_cast<std::size_t>(channels));
   RELUME_CHECK_EQ(error.size(), points);
   RELUME_CHECK(valid.empty() || valid.size() == points);

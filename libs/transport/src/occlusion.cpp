@@ -18,226 +18,236 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
+#include "direction_batch.h"
 #include "error_estimate.h"
+#include "group_rays.h"
 #include "relume/core/check.h"
 #include "relume/core/parallel.h"
+#include "sample_table.h"
 #include "texel_groups.h"
-#include "texel_rays.h"
 
 namespace relume::transport {
 namespace {
 
-constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
-constexpr std::uint32_t kGroupRays = kGroupTexels * kMaxBatch;
+constexpr std::uint32_t kLanes = GroupRays::kLanes, kColumns = SampleTable::kColumns;
+static_assert(kGroupTexels == kColumns);
 // Of a texel, to learn how much of it lies inside something: first few rays, if one meets a back face more.
 constexpr std::uint32_t kSuspectRays = 8, kBuriedRays = 32;
 constexpr float kSuspectShare = 0.25f;  // of blocked rays, below which it is not asked
 
+/// The j-th of `count` samples out of `known`, both powers of two: spread evenly over the hemisphere, and
+/// with different low bits, so that they are spread over the footprint too (sample_table.cpp).
+std::uint32_t spreadSample(std::uint32_t j, std::uint32_t count, std::uint32_t known) {
+  const std::uint32_t step = known / count;
+  std::uint32_t reversed = 0;
+  for (std::uint32_t bit = 1; bit < count; bit <<= 1) reversed = (reversed << 1) | ((j & bit) != 0);
+  return j * step + reversed % step;
+}
+
 /// What is known of one texel after some rounds.
 struct Tally {
-  std::vector<float> value;         // of each sample; negative: discarded
-  std::vector<std::uint16_t> code;  // of each sample
-  double sum = 0;                   // of the kept values
+  double sum = 0;  // of the kept values
   glm::dvec3 rgb{0}, bent{0};
-  std::uint32_t kept = 0, back = 0;
+  std::uint32_t kept = 0, back = 0, back_rays = 0;
+  float error = 0;
   float mean() const { return kept == 0 ? 1.0f : static_cast<float>(sum / kept); }
 };
 
-/// Traces one group of texels after the other; reuses its memory.
+/// Traces one group of texels after the other; reuses its memory. Arrays of samples have 16 columns, one for
+/// each place in the group.
 class GroupSolver {
  public:
-  GroupSolver(const trace::Tracer& tracer, const atlas::Texels& texels, const OcclusionOptions& options)
+  GroupSolver(const trace::Tracer& tracer, const atlas::Texels& texels, const SampleTable& samples,
+              const OcclusionOptions& options)
       : tracer_(tracer),
         texels_(texels),
+        samples_(samples),
         options_(options),
         any_hit_(options.kind == OcclusionKind::kScalar &&
                  options.weight.shape == DistanceWeight::Shape::kStep),
-        packets_(kGroupRays / kLanes),
-        values_(kGroupRays),
-        back_(kGroupRays),
-        scratch_(options.max_samples) {
-    if (options.kind == OcclusionKind::kSpectral) rgb_.resize(kGroupRays);
+        rays_(tracer.scene(), texels, samples, options.seed, options.weight.limit),
+        values_(std::size_t{options.max_samples} * kColumns),
+        back_(std::size_t{kMaxBatch} * kColumns),
+        scratch_(std::size_t{std::max(kMaxBatch, options.max_samples)} * kColumns),
+        column_(options.max_samples),
+        codes_(options.max_samples) {
+    if (options.kind == OcclusionKind::kSpectral) rgb_.resize(back_.size());
+    if (options.bent_normal) directions_.resize(back_.size());
     for (int c = 0; c < 3; ++c) {
       const float a = options.mean_albedo.rgb[c];
       inverse_mean_albedo_[c] = a > 0.0f ? 1.0f / a : 0.0f;
     }
-    const std::size_t samples = std::max(options.max_samples, kBuriedRays);
-    for (Tally& tally : tallies_) tally.value.resize(samples), tally.code.resize(samples);
   }
 
-  std::uint64_t rays() const { return rays_; }
+  std::uint64_t rays() const { return traced_; }
 
   /// Results of group[i] go to slots[i], unless it is scene::kNone.
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
              OcclusionResult& result) {
-    sources_.clear();
-    for (const std::uint32_t i : group) {
-      sources_.emplace_back(tracer_.scene(), texels_, texels_.points[i], options_.seed);
-    }
-    std::array<float, kGroupTexels> error{};
+    rays_.begin(group);
+    tallies_.fill(Tally());
+    variance_.fill(0.0f);
     const bool adaptive = options_.target_error > 0.0f;
-    for (std::uint32_t i = 0; i < group.size(); ++i) {
-      Tally& tally = tallies_[i];
-      tally.sum = 0, tally.rgb = tally.bent = glm::dvec3(0), tally.kept = tally.back = 0;
-    }
     std::vector<std::uint32_t>& active = active_;
     active.resize(group.size());
     for (std::uint32_t i = 0; i < group.size(); ++i) active[i] = i;
     std::uint32_t done = 0;
     while (!active.empty()) {
       const std::uint32_t round = done > 0 ? done : adaptive ? options_.min_samples : options_.max_samples;
-      const std::uint32_t batch = std::min(round, kMaxBatch);
-      for (std::uint32_t first = done; first < done + round; first += batch) {
-        fill(active, first, batch);
-        any_hit_ ? traceAnyHit() : traceFirstHit();
-        for (std::uint32_t k = 0; k < active.size(); ++k) gather(tallies_[active[k]], k, first, batch);
-      }
+      const std::uint32_t chunk = std::min(round, kMaxBatch);
+      rays_.select(active, chunk);
+      for (std::uint32_t first = done; first < done + round; first += chunk) solveChunk(first, chunk);
       done += round;
-      for (const std::uint32_t i : active) error[i] = standardError(tallies_[i], done);
+      for (const std::uint32_t i : active) tallies_[i].error = standardError(i, done);
       std::erase_if(active, [&](std::uint32_t i) {
-        return done == options_.max_samples || (adaptive && error[i] < options_.target_error);
+        return done == options_.max_samples || (adaptive && tallies_[i].error < options_.target_error);
       });
     }
-    const auto size = static_cast<std::uint32_t>(group.size());
-    for (std::uint32_t i = 0; i < size; ++i) back_rays_[i] = tallies_[i].kept;
-    if (any_hit_) findBuried(size);
-
-    for (std::uint32_t i = 0; i < group.size(); ++i) {
-      const std::uint32_t slot = slots[i];
-      if (slot == scene::kNone) continue;
-      const Tally& tally = tallies_[i];
-      const bool spectral = options_.kind == OcclusionKind::kSpectral;
-      result.value[slot] =
-          spectral && tally.kept > 0 ? Vec3(tally.rgb / static_cast<double>(tally.kept)) : Vec3(tally.mean());
-      result.error[slot] = error[i];
-      result.back_share[slot] =
-          back_rays_[i] == 0 ? 0.0f : static_cast<float>(tally.back) / static_cast<float>(back_rays_[i]);
-      if (options_.bent_normal) {
-        const double length = glm::length(tally.bent);
-        result.bent[slot] = length > 1e-6 * tally.kept ? Direction(tally.bent / length)
-                                                       : texels_.points[group[i]].shading_normal;
-      }
-    }
+    if (any_hit_) findBuried(static_cast<std::uint32_t>(group.size()));
+    for (std::uint32_t i = 0; i < group.size(); ++i)
+      if (slots[i] != scene::kNone) store(tallies_[i], texels_.points[group[i]], slots[i], result);
   }
 
  private:
-  /// The next rays of `active` texels, the k-th ray of each side by side.
-  void fill(std::span<const std::uint32_t> active, std::uint32_t first, std::uint32_t count) {
-    const auto stride = static_cast<std::uint32_t>(active.size());
-    used_ = (count * stride + kLanes - 1) / kLanes;
-    for (std::uint32_t k = 0; k < stride; ++k) {
-      sources_[active[k]].generate(first, count, options_.weight.limit, batch_);
-      Tally& tally = tallies_[active[k]];
-      std::copy_n(batch_.code.begin(), count, tally.code.begin() + first);
-      for (std::uint32_t s = 0; s < count; ++s) {
-        const std::uint32_t ray = s * stride + k;
-        trace::RayPacket& packet = packets_[ray / kLanes];
-        const std::uint32_t lane = ray % kLanes;
-        packet.origin_x[lane] = batch_.origin_x[s], packet.origin_y[lane] = batch_.origin_y[s];
-        packet.origin_z[lane] = batch_.origin_z[s], packet.direction_x[lane] = batch_.direction_x[s];
-        packet.direction_y[lane] = batch_.direction_y[s], packet.direction_z[lane] = batch_.direction_z[s];
-        packet.t_max[lane] = batch_.t_max[s], packet.alpha_seed[lane] = batch_.alpha_seed[s];
+  void store(const Tally& tally, const atlas::SurfacePoint& point, std::uint32_t slot,
+             OcclusionResult& result) const {
+    const bool spectral = options_.kind == OcclusionKind::kSpectral;
+    result.value[slot] =
+        spectral && tally.kept > 0 ? Vec3(tally.rgb / static_cast<double>(tally.kept)) : Vec3(tally.mean());
+    result.error[slot] = tally.error;
+    const std::uint32_t back_rays = any_hit_ ? tally.back_rays : tally.kept;
+    result.back_share[slot] =
+        back_rays == 0 ? 0.0f : static_cast<float>(tally.back) / static_cast<float>(back_rays);
+    if (!options_.bent_normal) return;
+    const double length = glm::length(tally.bent);
+    result.bent[slot] = length > 1e-6 * tally.kept ? Direction(tally.bent / length) : point.shading_normal;
+  }
+
+  /// Traces samples first .. first + count - 1 of the selected texels and adds what they find.
+  void solveChunk(std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t s = 0; s < count; s += rays_.samplesPerPacket()) {
+      rays_.packet(first + s, packet_);
+      any_hit_ ? traceAnyHit(first + s) : traceFirstHit(first + s, s);
+    }
+    const float* values = &values_[std::size_t{first} * kColumns];
+    std::array<float, kColumns> sum{}, mean{};
+    std::array<std::uint32_t, kColumns> kept{}, back{};
+    for (std::size_t s = 0; s < count; ++s) {
+      for (std::size_t c = 0; c < kColumns; ++c) {
+        const float value = values[s * kColumns + c];
+        sum[c] += std::max(value, 0.0f);
+        kept[c] += value >= 0.0f;
       }
     }
-    stride_ = stride;
-    for (std::uint32_t ray = count * stride; ray < used_ * kLanes; ++ray)
-      packets_[ray / kLanes].t_max[ray % kLanes] = -1.0f;
-  }
-
-  void traceAnyHit() {
-    for (std::uint32_t p = 0; p < used_; ++p) {
-      const trace::RayPacket& packet = packets_[p];
-      const std::uint32_t hit = tracer_.occludedPacket(packet);
-      float* values = values_.data() + static_cast<std::size_t>(p) * kLanes;
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        values[lane] = packet.t_max[lane] < 0.0f ? -1.0f : ((hit >> lane) & 1u) != 0 ? 0.0f : 1.0f;
-      }
+    for (std::size_t s = 0; !any_hit_ && s < count; ++s)
+      for (std::size_t c = 0; c < kColumns; ++c) back[c] += back_[s * kColumns + c];
+    for (const std::uint32_t i : active_) {
+      Tally& tally = tallies_[i];
+      tally.sum += sum[i], tally.kept += kept[i], tally.back += back[i];
+      mean[i] = kept[i] > 0 ? sum[i] / static_cast<float>(kept[i]) : 0.0f;
+      traced_ += kept[i];
+      if (!rgb_.empty() || !directions_.empty()) gatherVectors(tally, i, values, count);
     }
-    std::fill_n(back_.begin(), used_ * kLanes, std::uint8_t{0});
+    if (options_.smoothed)
+      addNetVariances({values, std::size_t{count} * kColumns}, mean, scratch_, variance_);
   }
 
-  void traceFirstHit() {
-    trace::HitPacket hits;
-    for (std::uint32_t p = 0; p < used_; ++p) {
-      const trace::RayPacket& packet = packets_[p];
-      tracer_.intersectPacket(packet, hits);
-      const std::size_t base = static_cast<std::size_t>(p) * kLanes;
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        const bool hit = ((hits.hit >> lane) & 1u) != 0, back = ((hits.back_face >> lane) & 1u) != 0;
-        back_[base + lane] = back;
-        const float rho = hit ? options_.weight(hits.t[lane]) : 1.0f;
-        values_[base + lane] = packet.t_max[lane] < 0.0f ? -1.0f : rho;
-        if (options_.kind != OcclusionKind::kSpectral) continue;
-        const bool closed = hit && hits.t[lane] < options_.weight.limit;
-        const Vec3 reflectance =
-            !closed ? Vec3(1.0f)
-            : back  ? Vec3(0.0f)
-                    : scene::surfaceAt(tracer_.scene(), hits.where(lane)).albedo().rgb * inverse_mean_albedo_;
-        rgb_[base + lane] = reflectance * rho;
-        if (values_[base + lane] >= 0.0f) {
-          const Vec3 w = rgb_[base + lane];
-          values_[base + lane] = (w.x + w.y + w.z) * (1.0f / 3.0f);
-        }
-      }
-    }
-  }
-
-  /// Adds what the k-th active texel's rays have found.
-  void gather(Tally& tally, std::uint32_t k, std::uint32_t first, std::uint32_t count) {
-    float sum = 0.0f;
-    std::uint32_t kept = 0, back = 0;
-    for (std::uint32_t s = 0; s < count; ++s) {
-      const std::size_t ray = static_cast<std::size_t>(s) * stride_ + k;
-      const float value = values_[ray];
-      tally.value[first + s] = value;
-      sum += std::max(value, 0.0f);
-      kept += value >= 0.0f;
-      back += back_[ray];
-    }
-    tally.sum += sum, tally.kept += kept, tally.back += back;
-    rays_ += kept;
-    if (!rgb_.empty() || options_.bent_normal) gatherVectors(tally, k, count);
-  }
-
-  void gatherVectors(Tally& tally, std::uint32_t k, std::uint32_t count) {
+  void gatherVectors(Tally& tally, std::uint32_t i, const float* values, std::uint32_t count) {
     Vec3 rgb(0), bent(0);
-    for (std::uint32_t s = 0; s < count; ++s) {
-      const std::size_t ray = static_cast<std::size_t>(s) * stride_ + k;
-      const float value = values_[ray];
-      if (value < 0.0f) continue;
-      if (!rgb_.empty()) rgb += rgb_[ray];
-      const trace::RayPacket& packet = packets_[ray / kLanes];
-      const std::size_t lane = ray % kLanes;
-      bent += value * Vec3(packet.direction_x[lane], packet.direction_y[lane], packet.direction_z[lane]);
+    for (std::size_t at = i; at < std::size_t{count} * kColumns; at += kColumns) {
+      if (values[at] < 0.0f) continue;
+      if (!rgb_.empty()) rgb += rgb_[at];
+      if (!directions_.empty()) bent += values[at] * directions_[at];
     }
     tally.rgb += glm::dvec3(rgb), tally.bent += glm::dvec3(bent);
   }
 
-  float standardError(const Tally& tally, std::uint32_t n) {
-    return netStandardError(std::span(tally.value).first(n), std::span(tally.code).first(n), scratch_);
+  /// Calls visit(lane, index of the lane's sample in arrays whose first row is sample 0 of the packet).
+  template <class Visit>
+  void forEachLane(Visit visit) const {
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+      if (rays_.used(lane)) visit(lane, rays_.sampleOf(lane) * kColumns + rays_.texelOf(lane));
   }
 
-  /// Back faces after any-hit rays, which do not tell them: first hits of a few rays of those texels where
-  /// enough rays are blocked (at most so many can have met a back face).
+  void keepDirections(std::uint32_t in_chunk) {
+    if (directions_.empty()) return;
+    Vec3* directions = &directions_[std::size_t{in_chunk} * kColumns];
+    forEachLane([&](std::uint32_t lane, std::uint32_t at) {
+      directions[at] = {packet_.direction_x[lane], packet_.direction_y[lane], packet_.direction_z[lane]};
+    });
+  }
+
+  void traceAnyHit(std::uint32_t sample) {
+    const std::uint32_t hit = tracer_.occludedPacket(packet_);
+    float* values = &values_[std::size_t{sample} * kColumns];
+    forEachLane([&](std::uint32_t lane, std::uint32_t at) {
+      values[at] = packet_.t_max[lane] < 0.0f ? -1.0f : ((hit >> lane) & 1u) != 0 ? 0.0f : 1.0f;
+    });
+    keepDirections(sample % kMaxBatch);
+  }
+
+  void traceFirstHit(std::uint32_t sample, std::uint32_t in_chunk) {
+    trace::HitPacket hits;
+    tracer_.intersectPacket(packet_, hits);
+    float* values = &values_[std::size_t{sample} * kColumns];
+    const std::size_t base = std::size_t{in_chunk} * kColumns;
+    forEachLane([&](std::uint32_t lane, std::uint32_t at) {
+      const bool hit = ((hits.hit >> lane) & 1u) != 0, back = ((hits.back_face >> lane) & 1u) != 0;
+      back_[base + at] = back;
+      const float rho = hit ? options_.weight(hits.t[lane]) : 1.0f;
+      const bool kept = packet_.t_max[lane] >= 0.0f;
+      values[at] = kept ? rho : -1.0f;
+      if (rgb_.empty()) return;
+      const bool closed = hit && hits.t[lane] < options_.weight.limit;
+      const Vec3 reflectance =
+          !closed ? Vec3(1.0f)
+          : back  ? Vec3(0.0f)
+                  : scene::surfaceAt(tracer_.scene(), hits.where(lane)).albedo().rgb * inverse_mean_albedo_;
+      const Vec3 w = reflectance * rho;
+      rgb_[base + at] = w;
+      if (kept) values[at] = (w.x + w.y + w.z) * (1.0f / 3.0f);
+    });
+    keepDirections(in_chunk);
+  }
+
+  float standardError(std::uint32_t i, std::uint32_t n) {
+    if (options_.smoothed) return standardErrorOf(variance_[i], tallies_[i].kept, n);
+    const std::uint32_t column = rays_.columnOf(i);
+    for (std::size_t s = 0; s < n; ++s)
+      column_[s] = values_[s * kColumns + i], codes_[s] = samples_.code[s * kColumns + column];
+    return netStandardError(std::span(column_).first(n), std::span(codes_).first(n), scratch_);
+  }
+
+  /// Back faces after any-hit rays, which do not tell them. Of texels of which enough rays are blocked (at
+  /// most so many can have met a back face), a few blocked ones are traced again, now to their first hits.
   void findBuried(std::uint32_t group) {
+    const std::uint32_t known =
+        std::min(options_.target_error > 0.0f ? options_.min_samples : options_.max_samples, kMaxBatch);
     std::vector<std::uint32_t>& suspects = active_;
     suspects.clear();
-    for (std::uint32_t i = 0; i < group; ++i) {
+    for (std::uint32_t i = 0; i < group; ++i)
       if (tallies_[i].mean() < 1.0f - kSuspectShare) suspects.push_back(i);
-    }
-    for (const std::uint32_t count : {kSuspectRays, kBuriedRays}) {
+    for (const std::uint32_t wanted : {kSuspectRays, kBuriedRays}) {
       if (suspects.empty()) return;
-      fill(suspects, 0, count);
-      traceFirstHit();
-      for (std::uint32_t k = 0; k < suspects.size(); ++k) {
-        std::uint32_t back = 0, kept = 0;
-        for (std::uint32_t s = 0; s < count; ++s) {
-          const std::size_t ray = static_cast<std::size_t>(s) * stride_ + k;
-          back += back_[ray], kept += values_[ray] >= 0.0f;
-        }
-        tallies_[suspects[k]].back = back, back_rays_[suspects[k]] = kept;
-        rays_ += kept;
+      const std::uint32_t count = std::min(wanted, known);
+      rays_.select(suspects, 1);
+      for (const std::uint32_t i : suspects) tallies_[i].back = tallies_[i].back_rays = 0;
+      for (std::uint32_t j = 0; j < count; ++j) {
+        const std::uint32_t s = spreadSample(j, count, known);
+        rays_.packet(s, packet_);
+        trace::HitPacket hits;
+        forEachLane([&](std::uint32_t lane, std::uint32_t) {
+          const float value = values_[std::size_t{s} * kColumns + rays_.texelOf(lane)];
+          tallies_[rays_.texelOf(lane)].back_rays += value >= 0.0f;
+          if (value != 0.0f) packet_.t_max[lane] = -1.0f;
+          traced_ += value == 0.0f;
+        });
+        tracer_.intersectPacket(packet_, hits);
+        forEachLane([&](std::uint32_t lane, std::uint32_t) {
+          tallies_[rays_.texelOf(lane)].back += (hits.back_face >> lane) & 1u;
+        });
       }
       std::erase_if(suspects, [&](std::uint32_t i) { return tallies_[i].back == 0; });
     }
@@ -245,21 +255,21 @@ class GroupSolver {
 
   const trace::Tracer& tracer_;
   const atlas::Texels& texels_;
+  const SampleTable& samples_;
   const OcclusionOptions& options_;
   const bool any_hit_;
   Vec3 inverse_mean_albedo_{0};
-  std::vector<trace::RayPacket> packets_;
-  std::vector<float> values_;
-  std::vector<std::uint8_t> back_;
-  std::vector<Vec3> rgb_;
-  std::vector<float> scratch_;
-  std::vector<TexelRays> sources_;
+  GroupRays rays_;
+  trace::RayPacket packet_;
+  std::vector<float> values_;           // [max_samples][16]; negative: discarded
+  std::vector<std::uint8_t> back_;      // of a chunk, as those below
+  std::vector<Vec3> rgb_, directions_;  // empty unless needed
+  std::vector<float> scratch_, column_;
+  std::vector<std::uint16_t> codes_;
   std::vector<std::uint32_t> active_;
-  std::array<Tally, kGroupTexels> tallies_;
-  std::array<std::uint32_t, kGroupTexels> back_rays_{};
-  RayBatch batch_;
-  std::uint32_t used_ = 0, stride_ = 0;
-  std::uint64_t rays_ = 0;
+  std::array<Tally, kColumns> tallies_;
+  std::array<float, kColumns> variance_{};
+  std::uint64_t traced_ = 0;
 };
 
 void checkOptions(const OcclusionOptions& options) {
@@ -271,49 +281,91 @@ void checkOptions(const OcclusionOptions& options) {
 
 }  // namespace
 
-OcclusionResult solveOcclusion(const trace::Tracer& tracer, const atlas::Texels& texels,
-                               const OcclusionOptions& options, Progress& progress,
-                               std::span<const std::uint32_t> which) {
+struct OcclusionSolver::Impl {
+  Impl(const trace::Tracer& tracer_, const atlas::Texels& texels_, const OcclusionOptions& options_)
+      : tracer(tracer_),
+        texels(texels_),
+        options(options_),
+        groups(texels_),
+        samples(options_.target_error > 0.0f ? options_.min_samples : options_.max_samples,
+                options_.max_samples, options_.seed,
+                options_.smoothed ? BlockSamples::kShared : BlockSamples::kSeparate) {}
+
+  /// A group solver that no other thread has; making one costs as much as some groups.
+  std::unique_ptr<GroupSolver> take() {
+    const std::lock_guard lock(mutex);
+    if (idle.empty()) return std::make_unique<GroupSolver>(tracer, texels, samples, options);
+    auto solver = std::move(idle.back());
+    idle.pop_back();
+    return solver;
+  }
+  void giveBack(std::unique_ptr<GroupSolver> solver) {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(solver));
+  }
+
+  const trace::Tracer& tracer;
+  const atlas::Texels& texels;
+  const OcclusionOptions options;
+  const TexelGroups groups;
+  const SampleTable samples;
+  std::mutex mutex;
+  std::vector<std::unique_ptr<GroupSolver>> idle;
+};
+
+OcclusionSolver::OcclusionSolver(const trace::Tracer& tracer, const atlas::Texels& texels,
+                                 const OcclusionOptions& options) {
   checkOptions(options);
-  const std::size_t points = texels.points.size(), count = which.empty() ? points : which.size();
+  impl_ = std::make_unique<Impl>(tracer, texels, options);
+}
+OcclusionSolver::~OcclusionSolver() = default;
+OcclusionSolver::OcclusionSolver(OcclusionSolver&&) noexcept = default;
+
+OcclusionResult OcclusionSolver::solve(Progress& progress, std::span<const std::uint32_t> which) {
+  const TexelGroups& groups = impl_->groups;
+  const std::size_t points = impl_->texels.points.size(), count = which.empty() ? points : which.size();
   OcclusionResult result;
   result.value.resize(count);
   result.error.resize(count);
   result.back_share.resize(count);
-  if (options.bent_normal) result.bent.resize(count);
+  if (impl_->options.bent_normal) result.bent.resize(count);
   std::vector<std::uint32_t> slot_of;  // by point; only for a selection
-  if (!which.empty()) {
-    slot_of.assign(points, scene::kNone);
-    for (std::size_t i = 0; i < which.size(); ++i) {
-      RELUME_CHECK_LT(which[i], points);
-      slot_of[which[i]] = static_cast<std::uint32_t>(i);
-    }
+  if (!which.empty()) slot_of.assign(points, scene::kNone);
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    RELUME_CHECK_LT(which[i], points);
+    slot_of[which[i]] = static_cast<std::uint32_t>(i);
   }
+  const std::vector<std::size_t> tiles = groups.tilesOf(which);
 
-  const TexelGroups groups(texels);
-  std::vector<std::uint64_t> rays(groups.tiles(), 0);
-  parallelFor(groups.tiles(), 4, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<GroupSolver> solver;  // much of an atlas may be empty
+  std::vector<std::uint64_t> rays(tiles.size(), 0);
+  parallelFor(tiles.size(), 4, [&](std::size_t begin, std::size_t end) {
+    auto solver = impl_->take();
     for (std::size_t tile = begin; tile < end; ++tile) {
-      groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
+      const std::uint64_t before = solver->rays();
+      groups.forEachGroup(tiles[tile], [&](std::span<const std::uint32_t> group) {
         std::array<std::uint32_t, kGroupTexels> slots;
         std::transform(group.begin(), group.end(), slots.begin(),
                        [&](std::uint32_t i) { return slot_of.empty() ? i : slot_of[i]; });
         const auto used = std::span(slots).first(group.size());
         const auto skipped = std::count(used.begin(), used.end(), scene::kNone);
         if (skipped == std::ssize(used) || progress.cancelled()) return;
-        const WorkItem item("texel", texels.points[group[0]].texel);
-        if (!solver) solver = std::make_unique<GroupSolver>(tracer, texels, options);
-        const std::uint64_t before = solver->rays();
+        const WorkItem item("texel", impl_->texels.points[group[0]].texel);
         solver->solve(group, used, result);
-        rays[tile] += solver->rays() - before;
         progress.advance(used.size() - static_cast<std::size_t>(skipped));
       });
+      rays[tile] = solver->rays() - before;
     }
+    impl_->giveBack(std::move(solver));
   });
   progress.throwIfCancelled();
   for (const std::uint64_t r : rays) result.rays += r;
   return result;
+}
+
+OcclusionResult solveOcclusion(const trace::Tracer& tracer, const atlas::Texels& texels,
+                               const OcclusionOptions& options, Progress& progress,
+                               std::span<const std::uint32_t> which) {
+  return OcclusionSolver(tracer, texels, options).solve(progress, which);
 }
 
 Albedo meanAlbedo(const atlas::Texels& texels) {

@@ -20,6 +20,21 @@ std::size_t TexelGroups::tiles() const {
   return static_cast<std::size_t>(texels_.pages) * tiles_x_ * tiles_y_;
 }
 
+std::vector<std::size_t> TexelGroups::tilesOf(std::span<const std::uint32_t> which) const {
+  const auto width = static_cast<std::uint32_t>(texels_.width),
+             height = static_cast<std::uint32_t>(texels_.height);
+  std::vector<std::uint8_t> touched(tiles(), which.empty() ? 1 : 0);
+  for (const std::uint32_t i : which) {
+    const std::uint32_t texel = texels_.points[i].texel, x = texel % width, row = texel / width;
+    const std::uint32_t band = row / height * tiles_y_ + row % height / kGroupSide;
+    touched[static_cast<std::size_t>(band) * tiles_x_ + x / (kTileBlocks * kGroupSide)] = 1;
+  }
+  std::vector<std::size_t> result;
+  for (std::size_t tile = 0; tile < touched.size(); ++tile)
+    if (touched[tile]) result.push_back(tile);
+  return result;
+}
+
 void TexelGroups::forEachGroup(std::size_t tile,
                                const std::function<void(std::span<const std::uint32_t>)>& visit) const {
   const auto width = static_cast<std::uint32_t>(texels_.width),
@@ -50,9 +65,12 @@ void TexelGroups::forEachGroup(std::size_t tile,
       const std::uint32_t end_texel = row_texel[r] + std::min(x + kGroupSide, x_end);
       while (next[r] < row_end[r] && texels_.points[next[r]].texel < end_texel) block[count++] = next[r]++;
     }
-    std::stable_sort(
-        block.begin(), block.begin() + static_cast<std::ptrdiff_t>(count),
-        [&](std::uint32_t a, std::uint32_t b) { return texels_.points[a].chart < texels_.points[b].chart; });
+    const auto by_chart = [&](std::uint32_t a, std::uint32_t b) {
+      return texels_.points[a].chart < texels_.points[b].chart;
+    };
+    const auto used = std::span(block).first(count);
+    if (!std::is_sorted(used.begin(), used.end(), by_chart))
+      std::stable_sort(used.begin(), used.end(), by_chart);
     for (std::size_t begin = 0; begin < count;) {
       std::size_t end = begin + 1;
       while (end < count && texels_.points[block[end]].chart == texels_.points[block[begin]].chart) ++end;

@@ -21,6 +21,8 @@ class TexelGroups {
   explicit TexelGroups(const atlas::Texels& texels);
 
   std::size_t tiles() const;
+  /// The tiles, increasing, that hold any of these indices into Texels::points; no index: all of them.
+  std::vector<std::size_t> tilesOf(std::span<const std::uint32_t> which) const;
   /// Calls visit with the indices into Texels::points of each group of the tile, increasing.
   void forEachGroup(std::size_t tile, const std::function<void(std::span<const std::uint32_t>)>& visit) const;
 

@@ -36,6 +36,7 @@ TEST(FilterTexels, LowersTheErrorBesideAWall) {
   for (const std::uint32_t n : {16u, 64u}) {
     OcclusionOptions options;
     options.min_samples = options.max_samples = n;
+    options.smoothed = true;
     const OcclusionResult result = solveOcclusion(trace::Tracer(scene), texels, options, silent);
     std::vector<float> before;
     for (const Vec3& v : result.value) before.push_back(v.x);
@@ -50,7 +51,8 @@ TEST(FilterTexels, LowersTheErrorBesideAWall) {
     }
     const double points = static_cast<double>(texels.points.size());
     EXPECT_LT(std::sqrt(smooth / raw), 0.5) << n << " rays";
-    EXPECT_LT(std::abs(bias / points), 5e-4);
+    // All blocks have the same samples, so their error does not average out over the floor.
+    EXPECT_LT(std::abs(bias / points), 0.05 / n);
   }
 }
 

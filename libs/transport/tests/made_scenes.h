@@ -2,6 +2,7 @@
 // Scenes and texels by code for the tests and benchmarks of transport. Receivers lie in the plane z = 0 and
 // face +z, unless said.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -104,7 +105,8 @@ inline atlas::Texels texelGrid(int width, int height, Point corner, Vec3 dp_dx, 
 
 /// `count` texels at one point: independent estimates of the same value.
 inline atlas::Texels repeatedPoint(int count, Point p, Normal normal = {0, 0, 1}) {
-  return texelGrid(count, 1, p, Vec3(0), Vec3(0), normal);
+  return texelGrid(std::min(count, 4), (count + 3) / 4, p, Vec3(0), Vec3(0),
+                   normal);  // blocks: each sequence of a block in turn
 }
 
 /// Floor 20 x 20 m and an 8 x 8 grid of round columns under a slab: a temple of about `triangles` triangles.

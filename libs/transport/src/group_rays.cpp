@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Rays from the whole footprint make the value the texel's mean (patch average of [IKSZ03] 4.5), not that of
+// one point, so contacts are anti-aliased. Each starts off the surface that it really lies on (offsetOrigin
+// with the sub-sample's own face). Where the chart folds inside a texel the faces look different ways: each
+// then has the hemisphere of its own.
+#include "group_rays.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "relume/core/check.h"
+#include "relume/core/sampling.h"
+
+namespace relume::transport {
+namespace {
+
+// A face turned away from the texel's by more than this (14 degrees) has the hemisphere of its own normal;
+// the others share the texel's shading normal. In a furnished room, 45 degrees instead of 14 raised the
+// error of all texels from 3.4 to 3.7 %.
+constexpr float kFoldCosine = 0.97f;
+
+}  // namespace
+
+GroupRays::GroupRays(const scene::Scene& scene, const atlas::Texels& texels, const SampleTable& samples,
+                     std::uint64_t seed, float limit)
+    : scene_(scene), texels_(texels), samples_(samples), seed_(seed), limit_(limit) {}
+
+void GroupRays::begin(std::span<const std::uint32_t> group) {
+  RELUME_CHECK_LE(group.size(), sources_.size());
+  for (std::size_t i = 0; i < group.size(); ++i) prepare(texels_.points[group[i]], sources_[i]);
+}
+
+void GroupRays::prepare(const atlas::SurfacePoint& point, Source& source) const {
+  const auto width = static_cast<std::uint32_t>(texels_.width),
+             height = static_cast<std::uint32_t>(texels_.height);
+  const std::uint32_t x = point.texel % width, y = point.texel / width % height;
+  source.column = y % kGroupSide * kGroupSide + x % kGroupSide;
+  source.alpha_stream = streamOf(seed_, point.texel, 2);
+  source.frame = RayFrame(point.shading_normal, point.geometric_normal);
+  source.centre = trace::offsetOrigin(point.position, point.geometric_normal);
+  source.dp_dx = point.dp_dx, source.dp_dy = point.dp_dy;
+  source.place_count =
+      std::min<std::uint32_t>(point.sample_count, static_cast<std::uint32_t>(source.places.size()));
+  for (std::uint32_t i = 0; i < source.place_count; ++i) {
+    const atlas::SubSample& sample = texels_.samples[point.first_sample + i];
+    Normal normal = scene::geometricNormal(scene_, point.instance, sample.triangle);
+    if (normal == Normal(0)) normal = point.geometric_normal;  // a sliver
+    const bool folded = glm::dot(normal, point.geometric_normal) < kFoldCosine;
+    source.places[i] = {trace::offsetOrigin(sample.position, normal), normal,
+                        folded ? Frame::about(normal) : source.frame.shading};
+  }
+}
+
+void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most_samples) {
+  RELUME_CHECK(!active.empty() && active.size() <= kLanes && std::has_single_bit(most_samples));
+  lanes_per_sample_ = std::bit_ceil(static_cast<std::uint32_t>(active.size()));
+  if (most_samples < kLanes) lanes_per_sample_ = std::max(lanes_per_sample_, kLanes / most_samples);
+  uneven_.clear();
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const std::uint32_t k = lane % lanes_per_sample_;
+    used_[lane] = k < active.size();
+    texel_[lane] = used_[lane] ? active[k] : active[0];
+    const Source& s = sources_[texel_[lane]];
+    const Frame& f = s.frame.shading;
+    Lanes& l = lanes_;
+    l.tx[lane] = f.t.x, l.ty[lane] = f.t.y, l.tz[lane] = f.t.z;
+    l.bx[lane] = f.b.x, l.by[lane] = f.b.y, l.bz[lane] = f.b.z;
+    l.nx[lane] = f.n.x, l.ny[lane] = f.n.y, l.nz[lane] = f.n.z;
+    l.gx[lane] = s.frame.geometric.x, l.gy[lane] = s.frame.geometric.y, l.gz[lane] = s.frame.geometric.z;
+    l.cx[lane] = s.centre.x, l.cy[lane] = s.centre.y, l.cz[lane] = s.centre.z;
+    l.ux[lane] = s.dp_dx.x, l.uy[lane] = s.dp_dx.y, l.uz[lane] = s.dp_dx.z;
+    l.vx[lane] = s.dp_dy.x, l.vy[lane] = s.dp_dy.y, l.vz[lane] = s.dp_dy.z;
+    l.limit[lane] = used_[lane] ? limit_ : -1.0f;
+    l.at[lane] = sampleOf(lane) * SampleTable::kColumns + s.column;
+    l.alpha[lane] = s.alpha_stream + sampleOf(lane);
+    if (used_[lane] && s.place_count > 0) uneven_.push_back(lane);
+  }
+}
+
+void GroupRays::packet(std::uint32_t first, trace::RayPacket& rays) const {
+  const Lanes& l = lanes_;
+  const std::uint32_t base = first * SampleTable::kColumns;
+  const float *xs = samples_.x.data() + base, *ys = samples_.y.data() + base, *zs = samples_.z.data() + base,
+              *us = samples_.u.data() + base, *vs = samples_.v.data() + base;
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    const std::uint32_t at = l.at[i];
+    const float x = xs[at], y = ys[at], z = zs[at], u = us[at] - 0.5f, v = vs[at] - 0.5f;
+    const float dx = x * l.tx[i] + y * l.bx[i] + z * l.nx[i], dy = x * l.ty[i] + y * l.by[i] + z * l.ny[i],
+                dz = x * l.tz[i] + y * l.bz[i] + z * l.nz[i];
+    rays.direction_x[i] = dx, rays.direction_y[i] = dy, rays.direction_z[i] = dz;
+    rays.origin_x[i] = l.cx[i] + (u * l.ux[i] + v * l.vx[i]);
+    rays.origin_y[i] = l.cy[i] + (u * l.uy[i] + v * l.vy[i]);
+    rays.origin_z[i] = l.cz[i] + (u * l.uz[i] + v * l.vz[i]);
+    const float cosine = dx * l.gx[i] + dy * l.gy[i] + dz * l.gz[i];
+    rays.t_max[i] = cosine > RayFrame::kGrazing ? l.limit[i] : -1.0f;
+    rays.alpha_seed[i] = l.alpha[i] + first;
+  }
+  for (const std::uint32_t i : uneven_) {
+    const Source& s = sources_[texel_[i]];
+    const std::uint32_t at = l.at[i];
+    const auto k = static_cast<std::uint32_t>(us[at] * static_cast<float>(s.place_count));
+    const Place& place = s.places[std::min(k, s.place_count - 1)];
+    const Direction d = place.shading.toWorld({xs[at], ys[at], zs[at]});
+    rays.direction_x[i] = d.x, rays.direction_y[i] = d.y, rays.direction_z[i] = d.z;
+    rays.origin_x[i] = place.origin.x, rays.origin_y[i] = place.origin.y, rays.origin_z[i] = place.origin.z;
+    rays.t_max[i] = RayFrame::above(d, place.geometric_normal) ? limit_ : -1.0f;
+  }
+}
+
+}  // namespace relume::transport
