@@ -83,6 +83,7 @@ class Filter {
   float geometry(std::size_t i, std::size_t j) const {
     const atlas::SurfacePoint &p = texels_.points[i], &q = texels_.points[j];
     if (p.chart != q.chart) return 0.0f;
+    if (p.triangle == q.triangle && p.shading_normal == q.shading_normal) return 1.0f;  // on flat walls most
     const float cosine = glm::dot(p.shading_normal, q.shading_normal);
     if (cosine < kCreaseCosine || glm::dot(p.geometric_normal, q.geometric_normal) < kCreaseCosine)
       return 0.0f;

@@ -33,8 +33,9 @@ namespace {
 
 constexpr std::uint32_t kLanes = GroupRays::kLanes, kColumns = SampleTable::kColumns;
 static_assert(kGroupTexels == kColumns);
-// Of a texel, to learn how much of it lies inside something: first few rays, if one meets a back face more.
-constexpr std::uint32_t kSuspectRays = 8, kBuriedRays = 32;
+// Of a texel, to learn how much of it lies inside something: first few rays; where any of the group's meets a
+// back face, more.
+constexpr std::uint32_t kSuspectRays = 4, kBuriedRays = 32;
 constexpr float kSuspectShare = 0.25f;  // of blocked rays, below which it is not asked
 
 /// The j-th of `count` samples out of `known`, both powers of two: spread evenly over the hemisphere, and
@@ -44,6 +45,12 @@ std::uint32_t spreadSample(std::uint32_t j, std::uint32_t count, std::uint32_t k
   std::uint32_t reversed = 0;
   for (std::uint32_t bit = 1; bit < count; bit <<= 1) reversed = (reversed << 1) | ((j & bit) != 0);
   return j * step + reversed % step;
+}
+
+/// How many times smaller smoothing makes the error of a texel that shares its block with so many of its
+/// chart: as the root of what the window holds, but for what differences of value and normal leave out.
+float smoothingGain(std::size_t texels) {
+  return std::max(1.0f, std::sqrt(static_cast<float>(texels)) / 1.5f);
 }
 
 /// What is known of one texel after some rounds.
@@ -90,6 +97,7 @@ class GroupSolver {
     tallies_.fill(Tally());
     variance_.fill(0.0f);
     const bool adaptive = options_.target_error > 0.0f;
+    const float target = options_.target_error * (options_.smoothed ? smoothingGain(group.size()) : 1.0f);
     std::vector<std::uint32_t>& active = active_;
     active.resize(group.size());
     for (std::uint32_t i = 0; i < group.size(); ++i) active[i] = i;
@@ -102,7 +110,7 @@ class GroupSolver {
       done += round;
       for (const std::uint32_t i : active) tallies_[i].error = standardError(i, done);
       std::erase_if(active, [&](std::uint32_t i) {
-        return done == options_.max_samples || (adaptive && tallies_[i].error < options_.target_error);
+        return done == options_.max_samples || (adaptive && tallies_[i].error < target);
       });
     }
     if (any_hit_) findBuried(static_cast<std::uint32_t>(group.size()));
@@ -229,8 +237,8 @@ class GroupSolver {
     suspects.clear();
     for (std::uint32_t i = 0; i < group; ++i)
       if (tallies_[i].mean() < 1.0f - kSuspectShare) suspects.push_back(i);
+    if (suspects.empty()) return;
     for (const std::uint32_t wanted : {kSuspectRays, kBuriedRays}) {
-      if (suspects.empty()) return;
       const std::uint32_t count = std::min(wanted, known);
       rays_.select(suspects, 1);
       for (const std::uint32_t i : suspects) tallies_[i].back = tallies_[i].back_rays = 0;
@@ -249,7 +257,8 @@ class GroupSolver {
           tallies_[rays_.texelOf(lane)].back += (hits.back_face >> lane) & 1u;
         });
       }
-      std::erase_if(suspects, [&](std::uint32_t i) { return tallies_[i].back == 0; });
+      const auto met = [&](std::uint32_t i) { return tallies_[i].back > 0; };
+      if (std::none_of(suspects.begin(), suspects.end(), met)) return;
     }
   }
 

@@ -118,8 +118,9 @@ TEST(ErrorEstimate, StoppingByItReachesTheTarget) {
     for (const bool smoothed : {false, true}) {
       options.smoothed = smoothed;
       const Errors e = errorsAt(tracer, place, options, expected);
-      EXPECT_LT(e.reported, 0.01) << place.name;
-      EXPECT_LT(e.truth, 0.02) << place.name;
+      const double gain = smoothed ? 4.0 / 1.5 : 1.0;  // a whole block of one chart, to be smoothed
+      EXPECT_LT(e.reported, 0.01 * gain) << place.name;
+      EXPECT_LT(e.truth, 0.02 * gain) << place.name;
     }
   }
 }

@@ -102,7 +102,10 @@ TEST(FilterTexels, DoesNotCrossCreases) {
 
 TEST(FilterTexels, DoesNotCrossSteps) {
   atlas::Texels texels = made::texelGrid(16, 16, {}, {1, 0, 0}, {0, 1, 0});
-  for (atlas::SurfacePoint& p : texels.points) p.position.z = p.texel % 16 < 8 ? 0.0f : 5.0f;
+  for (atlas::SurfacePoint& p : texels.points) {
+    p.triangle = p.texel % 16 < 8 ? 0 : 1;
+    p.position.z = p.triangle == 0 ? 0.0f : 5.0f;
+  }
   expectNoMixing(texels, [](std::uint32_t x) { return x < 8; });
 }
 

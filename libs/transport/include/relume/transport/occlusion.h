@@ -44,8 +44,9 @@ struct OcclusionOptions {
       false;           ///< also the cosine-weighted bent normal of the open directions (hits count by weight)
   Albedo mean_albedo;  ///< a~ of [USKP09] section 8 (spectral only)
   std::uint32_t min_samples = 64, max_samples = 256;  ///< rays per texel, powers of two up to 65536
-  float target_error =
-      0.0f;  ///< stop a texel when its estimated standard error is below this; 0: always max_samples
+  /// A texel stops when its estimated standard error is below this; 0: always max_samples. With `smoothed`
+  /// the error that is left after smoothing, as far as the number of the chart's texels in the block tells.
+  float target_error = 0.0f;
   /// The values will be smoothed over blocks of 4 x 4 texels (filterTexels): the rounds of a block are then
   /// nets of 16 times as many samples. Otherwise each texel has the best samples for itself.
   bool smoothed = false;
