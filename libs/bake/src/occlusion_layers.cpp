@@ -98,8 +98,10 @@ PointLayer finishRows(const RowLayout& layout, Correction correction, const atla
     layer.valid[i] = r[layout.backAt()] <= kBuriedShare;
   }
   if (filter) {
-    transport::filterTexels(texels, layer.error, layer.valid, layout.channels, value.values);
+    std::vector<float> left(points);
+    transport::filterTexels(texels, layer.error, layer.valid, layout.channels, value.values, left);
     if (layout.bent) transport::filterTexels(texels, layer.error, layer.valid, 3, bent.values);
+    layer.error = std::move(left);
   }
   if (correction != Correction::kNone) {
     PointPlane rgb{

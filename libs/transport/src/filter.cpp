@@ -47,10 +47,11 @@ class Filter {
     }
   }
 
-  /// The filtered values of point i; in: [points][channels], out: [channels].
-  void apply(std::size_t i, std::span<const float> in, float* out) const {
+  /// The filtered values of point i, and the error that they are left with; in: [points][channels], out:
+  /// [channels].
+  float apply(std::size_t i, std::span<const float> in, float* out) const {
     std::copy_n(&in[i * channels_], channels_, out);
-    if (!usable(i)) return;
+    if (!usable(i)) return error_[i];
     const int radius = options_.radius;
     const std::uint32_t texel = texels_.points[i].texel;
     const auto x = static_cast<int>(texel % static_cast<std::uint32_t>(width_));
@@ -59,7 +60,7 @@ class Filter {
     const std::uint32_t* centre = &point_of_[texel];
     const int reach_x = std::min({radius, x, width_ - 1 - x}),
               reach_y = std::min({radius, y, height_ - 1 - y});
-    float total = 1.0f;
+    float total = 1.0f, variance = error_[i] * error_[i];
     for (int dy = 0; dy <= reach_y; ++dy) {
       for (int dx = dy == 0 ? 1 : -reach_x; dx <= reach_x; ++dx) {
         const std::uint32_t a = centre[dy * width_ + dx], b = centre[-dy * width_ - dx];
@@ -72,9 +73,11 @@ class Filter {
         for (std::size_t c = 0; c < channels_; ++c)
           out[c] += weight * (in[a * channels_ + c] + in[b * channels_ + c]);
         total += 2.0f * weight;
+        variance += weight * weight * (error_[a] * error_[a] + error_[b] * error_[b]);
       }
     }
     for (std::size_t c = 0; c < channels_; ++c) out[c] /= total;
+    return std::sqrt(variance) / total;
   }
 
  private:
@@ -119,17 +122,20 @@ class Filter {
 
 void filterTexels(const atlas::Texels& texels, std::span<const float> error,
                   std::span<const std::uint8_t> valid, int channels, std::span<float> values,
-                  const FilterOptions& options) {
+                  std::span<float> error_left, const FilterOptions& options) {
   const std::size_t points = texels.points.size();
   RELUME_CHECK(channels > 0 && options.radius > 0 && options.normal_power >= 0);
   RELUME_CHECK_EQ(values.size(), points * static_cast<std::size_t>(channels));
   RELUME_CHECK_EQ(error.size(), points);
   RELUME_CHECK(valid.empty() || valid.size() == points);
+  RELUME_CHECK(error_left.empty() || error_left.size() == points);
   const std::vector<float> in(values.begin(), values.end());
   const Filter filter(texels, error, valid, channels, options);
   parallelFor(points, 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      filter.apply(i, in, &values[i * static_cast<std::size_t>(channels)]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const float left = filter.apply(i, in, &values[i * static_cast<std::size_t>(channels)]);
+      if (!error_left.empty()) error_left[i] = left;
+    }
   });
 }
 

@@ -128,6 +128,19 @@ TEST(FilterTexels, InvalidTexelsNeitherGiveNorTake) {
   EXPECT_EQ(values, before);
 }
 
+TEST(FilterTexels, TellsTheErrorThatIsLeft) {
+  const atlas::Texels texels = made::texelGrid(64, 64, {}, {1, 0, 0}, {0, 1, 0});
+  const float sigma = std::sqrt(1.0f / 12.0f);  // of noise()
+  std::vector<float> values, left(texels.points.size());
+  for (std::uint32_t i = 0; i < texels.points.size(); ++i) values.push_back(noise(i));
+  const std::vector<float> error(texels.points.size(), sigma);
+  filterTexels(texels, error, allValid(texels), 1, values, left);
+  double truth = 0, told = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) truth += values[i] * values[i], told += left[i] * left[i];
+  EXPECT_LT(truth, 0.15 * 64 * 64 * sigma * sigma);
+  EXPECT_NEAR(std::sqrt(told / truth), 1.0, 0.1);
+}
+
 TEST(FilterTexels, ChannelsShareTheirWeights) {
   const atlas::Texels texels = made::texelGrid(12, 12, {}, {1, 0, 0}, {0, 1, 0});
   std::vector<float> values;

@@ -98,7 +98,8 @@ float correctedStewartLanger(float k, float rho);  ///< k / (1 - rho (1 - k))  (
 float correctedJimenez(float k, float rho);        ///< cubic fit of multi-bounce AO (Jimenez et al. 2016)
 
 /// Edge-aware smoothing in texel space that never crosses charts or creases. `values`: [points][channels], in
-/// place.
+/// place. `error`: the standard error of each point's values; `error_left`, where given, becomes that of the
+/// smoothed values, were the errors of neighbours independent (it must not be `error`).
 struct FilterOptions {
   int radius = 2;  ///< texels, smaller than the gutter plus the chart
   int normal_power = 32;
@@ -106,6 +107,6 @@ struct FilterOptions {
 };
 void filterTexels(const atlas::Texels& texels, std::span<const float> error,
                   std::span<const std::uint8_t> valid, int channels, std::span<float> values,
-                  const FilterOptions& options = {});
+                  std::span<float> error_left = {}, const FilterOptions& options = {});
 
 }  // namespace relume::transport
