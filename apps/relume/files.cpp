@@ -31,11 +31,11 @@ void print(const Warnings& warnings) {
   }
 }
 
-std::unique_ptr<Opened> open(const std::filesystem::path& path) {
+std::unique_ptr<Opened> open(const std::filesystem::path& path, const scene::gltf::ImportOptions& options) {
   auto opened = std::make_unique<Opened>();
   const auto document = scene::gltf::Document::read(path);
   Warnings warnings;
-  opened->scene = scene::gltf::import(document, warnings);
+  opened->scene = scene::gltf::import(document, warnings, options);
   print(warnings);
   const auto extensions = document.json().find("extensions");
   if (extensions != document.json().end() && extensions->contains("RELUME_transfer"))

@@ -22,7 +22,8 @@ struct Opened {
   std::optional<asset::Asset> asset;
 };
 /// Prints warnings. A file without a bake is fine; a damaged bake is not.
-std::unique_ptr<Opened> open(const std::filesystem::path& path);
+std::unique_ptr<Opened> open(const std::filesystem::path& path,
+                             const scene::gltf::ImportOptions& options = {});
 
 /// "1,0.5,2" or "1.5" (all three alike). Throws Error kUsage naming the option.
 Vec3 parseTriple(const std::string& text, const std::string& option, bool one_is_enough);

@@ -9,6 +9,7 @@
 #include "exposure.h"
 #include "files.h"
 #include "lights.h"
+#include "reference_picture.h"
 #include "relume/core/file.h"
 #include "relume/image/colour.h"
 #include "relume/image/io.h"
@@ -23,11 +24,13 @@ constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,
                                View::kTexels,     View::kCharts,    View::kValidity};
 
 struct RenderOptions {
-  std::string input, output, view, layer, lights, ambient, background = "0.05", tone = "auto";
-  std::string eye, target, size = "960x540", renderer = "cpu";
-  std::optional<float> exposure;
+  std::string input, output, mode, view, layer, lights, ambient, background = "0.05", tone = "auto";
+  std::string eye, target, size = "960x540", renderer = "cpu", materials = "full";
+  std::optional<float> exposure, error;
+  std::optional<int> spp, bounces;
+  std::uint64_t seed = 1;
   float fov_deg = 50, beta = 0.1f;
-  int camera = -1, spp = 16;
+  int camera = -1;
 };
 
 std::vector<std::string> viewNames() {
@@ -66,12 +69,42 @@ image::ToneCurve curveOf(const RenderOptions& options, View view) {
   return filmic && !isData(view) ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain;
 }
 
+/// Linear to .exr and .hdr, as a display shows it to .png. Pictures with lamps get an exposure when nobody
+/// gives one.
+void writePicture(const RenderOptions& options, const image::Image& linear, View view, Vec3 background) {
+  if (!options.output.ends_with(".png")) return image::writeImage(options.output, linear);
+  float stops = isData(view) ? 0.0f : options.exposure.value_or(0.0f);
+  if (view == View::kLit && !options.exposure) {
+    stops = chooseExposure(linear, background, !options.mode.empty());
+    if (stops != 0.0f) fmt::print("shown with --exposure {:.1f}\n", stops);
+  }
+  image::writeImage(options.output, image::toneMap(linear, curveOf(options, view), stops));
+}
+
+void renderReference(const RenderOptions& options, Progress& progress) {
+  const auto opened = open(options.input, {.normal_maps = true});
+  const IVec2 size = parseExtent(options.size, "--size");
+  lightScene(opened->scene, options.lights, options.ambient);
+  transport::ReferenceOptions how;
+  how.target_error = options.error.value_or(0.0f);
+  how.samples = static_cast<std::uint32_t>(options.spp.value_or(options.error ? 1 << 16 : 64));
+  how.max_bounces = options.mode == "direct" ? 0 : options.bounces.value_or(how.kUnlimited);
+  how.seed = options.seed;
+  if (options.materials == "lambert") how.materials = transport::Materials::kLambert;
+  how.background = parseTriple(options.background, "--background", true);
+  const transport::Reference reference(opened->scene, {.isa = "", .include_dynamic = true});
+  const picture::Viewpoint viewpoint = viewpointOf(options, size, reference.tracer());
+  const image::Image linear = referencePicture(reference, viewpoint, size, how, progress);
+  writePicture(options, linear, View::kLit, how.background);
+}
+
 void renderPicture(const RenderOptions& options, Progress& progress) {
   requireWritable(options.output);
+  if (!options.mode.empty()) return renderReference(options, progress);
   const auto opened = open(options.input);
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const IVec2 size = parseExtent(options.size, "--size");
-  picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp};
+  picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp.value_or(16)};
   picture.view = viewOf(options.view, *opened);
   picture.layer = options.layer;
   picture.lights = chooseLights(options.lights, opened->scene);
@@ -86,32 +119,35 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   picture.background = parseTriple(options.background, "--background", true);
   const image::Image linear = picture::render(tracer, opened->asset ? &*opened->asset : nullptr,
                                               viewpointOf(options, size, tracer), picture, progress);
-  if (!options.output.ends_with(".png")) return image::writeImage(options.output, linear);
-  float stops = isData(picture.view) ? 0.0f : options.exposure.value_or(0.0f);
-  if (picture.view == View::kLit && !options.exposure) {
-    stops = chooseExposure(linear, picture.background);
-    if (stops != 0.0f) fmt::print("shown with --exposure {:.1f}\n", stops);
-  }
-  image::writeImage(options.output, image::toneMap(linear, curveOf(options, picture.view), stops));
+  writePicture(options, linear, picture.view, picture.background);
 }
 
 }  // namespace
 
 void addRender(CLI::App& app, Program& program) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command =
-      app.add_subcommand("render",
-                         "A picture of a scene or a bake, to .png or linear .exr.\nExample: relume render "
-                         "castle.baked.glb -o castle.png --camera 0 --view obscurance");
+  CLI::App* command = app.add_subcommand(
+      "render",
+      "A picture of a scene or a bake, to .png or linear .exr.\nExample: relume render "
+      "castle.baked.glb -o castle.png --camera 0 --view obscurance\nExample: relume render "
+      "castle.glb -o truth.exr --mode reference --error 0.02");
   command->add_option("INPUT", options->input, "a scene (.gltf, .glb) or a baked .glb")->required();
   command->add_option("-o,--output", options->output, "picture: .png (tone-mapped), .exr or .hdr (linear)")
       ->required();
+  CLI::Option* mode =
+      command
+          ->add_option("--mode", options->mode,
+                       "reference: all light, path-traced without bias; direct: the same with light straight "
+                       "from lamps alone. Without it, a view of the bake")
+          ->check(CLI::IsMember({"reference", "direct"}));
   command
       ->add_option("--view", options->view,
                    "what to show; without it, lit where the bake has lights, obscurance where it has none, "
                    "albedo without a bake")
-      ->check(CLI::IsMember(viewNames()));
-  command->add_option("--layer", options->layer, "layer to show; without it, the first that fits");
+      ->check(CLI::IsMember(viewNames()))
+      ->excludes(mode);
+  command->add_option("--layer", options->layer, "layer to show; without it, the first that fits")
+      ->excludes(mode);
   command
       ->add_option("--camera", options->camera,
                    "camera of the file; -1: its first, or one that frames the scene")
@@ -122,18 +158,43 @@ void addRender(CLI::App& app, Program& program) {
       ->check(CLI::Range(1.0, 170.0))
       ->capture_default_str();
   command->add_option("--size", options->size, "width x height")->capture_default_str();
-  command->add_option("--spp", options->spp, "samples per pixel")
-      ->check(CLI::Range(1, 65536))
+  command
+      ->add_option("--spp", options->spp,
+                   "samples per pixel, or the most of them beside --error; without it, 16, with --mode 64")
+      ->check(CLI::Range(1, 65536));
+  command
+      ->add_option("--error", options->error,
+                   "with --mode: sample each part of the picture until its estimated standard error is below "
+                   "this share of its brightness, e.g. 0.02")
+      ->check(CLI::Range(1e-4, 1.0))
+      ->needs(mode);
+  command
+      ->add_option("--bounces", options->bounces,
+                   "with --mode reference: how often light may be reflected before it reaches what is seen; "
+                   "without it, endlessly")
+      ->check(CLI::Range(0, 1000000))
+      ->needs(mode);
+  command
+      ->add_option("--materials", options->materials,
+                   "with --mode: full, or lambert: diffuse alone, as lightmaps have it")
+      ->check(CLI::IsMember({"full", "lambert"}))
+      ->needs(mode)
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "with --mode: of the random numbers")
+      ->needs(mode)
       ->capture_default_str();
   command->add_option("--lights", options->lights, "JSON list of lights; without it, the scene's own");
   command->add_option("--ambient", options->ambient,
-                      "ambient irradiance, one number or R,G,B; without it, pi, or 0.3 beside lights");
+                      "ambient irradiance, one number or R,G,B; without it, pi, or 0.3 beside lights. With "
+                      "--mode, from an environment of that constant light; without it, none beside lights");
   command
       ->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--exposure", options->exposure,
-                      "stops, for .png; without it, 0, or less where lamps would leave nothing but white");
+  command->add_option(
+      "--exposure", options->exposure,
+      "stops, for .png; without it, 0, or less where lamps would leave nothing but white, and with "
+      "--mode more where they would leave nothing but black");
   command->add_option("--tone", options->tone, "tone curve, for .png; auto: filmic for lit pictures")
       ->check(CLI::IsMember({"auto", "filmic", "plain"}))
       ->capture_default_str();

@@ -136,7 +136,7 @@ void writeReport(const fs::path& folder, const fs::path& baked, const bake::Bake
     const bool light = shot.view == View::kLit;
     image::writeImage(folder / shot.file,
                       image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain,
-                                     light ? chooseExposure(linear, options.background) : 0.0f));
+                                     light ? chooseExposure(linear, options.background, false) : 0.0f));
   }
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"

@@ -371,6 +371,86 @@ class AfterTheBake(CliTest):
         self.assertIn("corner.baked.glb", done.stderr)
 
 
+class Reference(CliTest):
+    """Path-traced pictures against what they must show."""
+
+    def setUp(self):
+        super().setUp()
+        b = glb.Builder()
+        b.node(b.quads([([-50, 0, -50], [0, 0, 100], [100, 0, 0])], b.material([0.8, 0.8, 0.8]), "floor"))
+        self.floor = b.write(self.folder / "floor.glb")
+        self.look = ["--size", "32x16", "--fov", 10, "--eye", "0,3,2", "--target", "0,0,0", "--background", 0]
+
+    def lights(self, content, name="lights.json"):
+        path = self.folder / name
+        path.write_text(json.dumps(content))
+        return path
+
+    def picture(self, scene, *args, mode="reference", **more):
+        done = relume("render", scene, "-o", self.folder / "a.exr", "--mode", mode, *self.look, *args, **more)
+        width, height, planes = glb.read_exr(self.folder / "a.exr")
+        return [planes[c] for c in "RGB"], done
+
+    def middle(self, planes):
+        return [plane[8 * 32 + 16] for plane in planes]
+
+    def test_a_lamp_over_a_floor(self):
+        lamp = self.lights([{"type": "point", "position": [0, 2, 0], "intensity": 5, "color": [1, 0.5, 0.25]}])
+        planes, done = self.picture(self.floor, "--lights", lamp, "--materials", "lambert", "--spp", 4, mode="direct")
+        for value, colour in zip(self.middle(planes), (1, 0.5, 0.25)):
+            self.assertAlmostEqual(value, 0.8 * colour * 5 / 4 / math.pi, delta=2e-3)
+        self.assertIn("4 samples per pixel", done.stdout)
+        self.assertEqual(done.stderr, "")
+
+    def test_a_closed_room_in_which_everything_glows(self):
+        b = glb.Builder()
+        walls = b.material([0.5, 0.5, 0.5], emissiveFactor=[0.2, 0.1, 0.3])
+        b.node(b.box([5, 5, 5], [-5, -5, -5], walls), "room")  # fronts inwards
+        room = b.write(self.folder / "room.glb")
+        planes, done = self.picture(room, "--materials", "lambert", "--error", 0.02)
+        for plane, emitted in zip(planes, (0.2, 0.1, 0.3)):
+            self.assertAlmostEqual(sum(plane) / len(plane), emitted / (1 - 0.5), delta=0.01 * emitted)
+        planes, _ = self.picture(room, "--materials", "lambert", "--bounces", 0, "--spp", 64)
+        self.assertAlmostEqual(sum(planes[0]) / len(planes[0]), 0.2 * (1 + 0.5), delta=0.01)
+
+    def test_environments(self):
+        texel = bytes([128, 128, 128, 129])
+        (self.folder / "white.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + 2 * texel)
+        for environment in ({"radiance": [1, 1, 1]}, {"file": "white.hdr"}, {"file": "white.hdr", "radiance": [1, 1, 1], "rotation": 1}):
+            planes, _ = self.picture(self.floor, "--lights", self.lights({"environment": environment}), "--materials", "lambert", "--spp", 256)
+            self.assertAlmostEqual(sum(planes[1]) / len(planes[1]), 0.8, delta=0.01, msg=str(environment))
+        planes, _ = self.picture(self.floor, "--ambient", math.pi, "--materials", "lambert")
+        self.assertAlmostEqual(sum(planes[1]) / len(planes[1]), 0.8, delta=0.01)
+        sky = self.lights({"environment": {"sky": {"direction": [0.3, -1, 0.2], "turbidity": 3}}})
+        planes, _ = self.picture(self.floor, "--lights", sky, "--materials", "lambert")
+        red, green, blue = (sum(p) / len(p) for p in planes)
+        self.assertGreater(blue, 1.2 * red)
+        self.assertTrue(1000 < green < 10000, green)
+
+    def test_the_same_seed_gives_the_same_bytes(self):
+        def bytes_of(*args):
+            self.picture(self.scene, "--spp", 8, *args)
+            return (self.folder / "a.exr").read_bytes()
+        self.assertEqual(bytes_of(), bytes_of("--seed", 1))
+        self.assertNotEqual(bytes_of(), bytes_of("--seed", 2))
+
+    def test_a_scene_without_light_says_so(self):
+        planes, done = self.picture(self.floor, "--materials", "lambert")
+        self.assertIn("nothing that shines", done.stderr)
+        self.assertAlmostEqual(self.middle(planes)[0], 0.8, delta=0.05)
+
+    def test_wrong_usage(self):
+        def status(expect, *args):
+            return relume("render", self.floor, "-o", self.folder / "b.exr", *args, expect=expect).stderr
+        status(2, "--mode", "reference", "--view", "lit")
+        status(2, "--error", 0.1)
+        status(2, "--mode", "reference", "--error", 0)
+        self.assertIn("--ambient", status(2, "--mode", "reference", "--ambient", 1, "--lights", self.lights({"environment": {"radiance": [1, 1, 1]}})))
+        self.assertIn("none.hdr", status(1, "--mode", "reference", "--lights", self.lights({"environment": {"file": "none.hdr"}})))
+        self.assertIn("environment", status(1, "--mode", "reference", "--lights", self.lights({"environment": {}})))
+        self.assertFalse((self.folder / "b.exr").exists())
+
+
 class Validator(CliTest):
     """Baked files beside the Khronos validator (tests/validate; `npm ci` there installs it, scripts/test does)."""
 

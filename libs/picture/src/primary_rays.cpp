@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "primary_rays.h"
+#include "relume/picture/primary_rays.h"
 
 #include <cmath>
 

@@ -15,11 +15,11 @@
 
 #include "baked_values.h"
 #include "layered_tracer.h"
-#include "primary_rays.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
 #include "relume/picture/picture.h"
+#include "relume/picture/primary_rays.h"
 #include "shader.h"
 
 namespace relume::picture {

@@ -5,8 +5,8 @@
 
 #include "framing.h"
 #include "hand_made.h"
-#include "primary_rays.h"
 #include "relume/core/error.h"
+#include "relume/picture/primary_rays.h"
 
 namespace relume::picture {
 namespace {

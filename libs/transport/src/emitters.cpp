@@ -184,7 +184,10 @@ struct Emitters::Impl {
       if (const float e = estimate(g, p, n); e > 0) all.sum += e, ++all.lit;
     return all;
   }
+  /// Nothing shines but what has a place: no estimate is needed to choose it.
+  bool onlyLocal() const { return suns.empty() && scene.environment.dark(); }
   float groupProbability(std::size_t group, Point p, Normal n) const {
+    if (onlyLocal()) return 1.0f;
     return groupsAt(p, n).probability(estimate(group, p, n));
   }
 
@@ -273,16 +276,21 @@ bool Emitters::empty() const {
 std::size_t Emitters::triangleCount() const { return impl_->triangles.size(); }
 
 LightSample Emitters::sample(Point p, Normal n, Vec2 u, float choice) const {
-  const Impl::Groups all = impl_->groupsAt(p, n);
-  std::size_t group = impl_->groups();
-  float probability = 0.0f;
-  // The last group that is lit takes what rounding leaves over.
-  for (std::size_t g = 0; g < impl_->groups(); ++g) {
-    const float own = all.probability(impl_->estimate(g, p, n));
-    if (!(own > 0)) continue;
-    if (group < impl_->groups()) choice -= probability;
-    group = g, probability = own;
-    if (choice < own) break;
+  std::size_t group = 0;
+  float probability = 1.0f;
+  if (!impl_->onlyLocal()) {
+    const Impl::Groups all = impl_->groupsAt(p, n);
+    float below = 0.0f;
+    probability = 0.0f;
+    // The last group that is lit takes what rounding leaves over.
+    for (std::size_t g = 0; g < impl_->groups(); ++g) {
+      const float own = all.probability(impl_->estimate(g, p, n));
+      if (!(own > 0)) continue;
+      below += probability;
+      group = g, probability = own;
+      if (choice < below + own) break;
+    }
+    choice -= below;
   }
   if (!(probability > 0)) return {};
   const float rest = std::clamp(choice / probability, 0.0f, 0x1.fffffep-1f);

@@ -36,6 +36,8 @@ Reference::Reference(const scene::Scene& scene, const trace::TracerOptions& opti
 Reference::~Reference() = default;
 Reference::Reference(Reference&&) noexcept = default;
 
+const trace::Tracer& Reference::tracer() const { return impl_->tracer; }
+
 ReferenceImage Reference::image(int width, int height, const PrimaryRay& primary,
                                 const ReferenceOptions& options, Progress& progress) const {
   const auto blocks_x = static_cast<std::size_t>((width + kBlock - 1) / kBlock),

@@ -90,6 +90,9 @@ class Reference {
   ~Reference();
   Reference(Reference&&) noexcept;
 
+  /// What its rays are traced by; stops at transmission.
+  const trace::Tracer& tracer() const;
+
   /// Throws Error kInterrupted.
   ReferenceImage image(int width, int height, const PrimaryRay& primary, const ReferenceOptions& options,
                        Progress& progress) const;
