@@ -158,12 +158,11 @@ struct Emitters::Impl {
     });
   }
 
-  // The choice between the tree of local emitters (group 0), suns (1 ...) and the environment (last).
-  std::size_t groups() const { return suns.size() + 2; }
-  float estimate(std::size_t group, Point p, Normal n) const {
-    if (group == 0) return tree->importance(p, n);
-    if (group == suns.size() + 1) return kPi * environment.meanLuminance();
-    const Sun& sun = suns[group - 1];
+  // The choice of a distant emitter: a sun, or after the last of them the environment.
+  std::size_t distantCount() const { return suns.size() + (scene.environment.dark() ? 0 : 1); }
+  float estimate(std::size_t distant, Normal n) const {
+    if (distant == suns.size()) return kPi * environment.meanLuminance();
+    const Sun& sun = suns[distant];
     if (n == Normal(0)) return luminance(sun.irradiance);
     const float c = glm::dot(n, sun.to_light), s = std::sqrt(std::max(0.0f, 1.0f - c * c));
     const float cos_radius = 1.0f - sun.height();
@@ -171,24 +170,22 @@ struct Emitters::Impl {
     const float highest = c >= cos_radius ? 1.0f : c * cos_radius + s * sun.sine();
     return luminance(sun.irradiance) * std::max(highest, 0.0f);
   }
-  struct Groups {
+  /// Estimates of all distant emitters together, and how many are not dark.
+  struct Distant {
     float sum = 0;
     int lit = 0;
     float probability(float own) const {
       return own > 0 ? kByEstimate * own / sum + (1.0f - kByEstimate) / static_cast<float>(lit) : 0.0f;
     }
   };
-  Groups groupsAt(Point p, Normal n) const {
-    Groups all;
-    for (std::size_t g = 0; g < groups(); ++g)
-      if (const float e = estimate(g, p, n); e > 0) all.sum += e, ++all.lit;
+  Distant distantAt(Normal n) const {
+    Distant all;
+    for (std::size_t i = 0; i < distantCount(); ++i)
+      if (const float e = estimate(i, n); e > 0) all.sum += e, ++all.lit;
     return all;
   }
-  /// Nothing shines but what has a place: no estimate is needed to choose it.
-  bool onlyLocal() const { return suns.empty() && scene.environment.dark(); }
-  float groupProbability(std::size_t group, Point p, Normal n) const {
-    if (onlyLocal()) return 1.0f;
-    return groupsAt(p, n).probability(estimate(group, p, n));
+  float distantProbability(std::size_t distant, Normal n) const {
+    return distantAt(n).probability(estimate(distant, n));
   }
 
   LightSample sampleSun(const Sun& sun, Vec2 u) const {
@@ -270,38 +267,35 @@ Emitters::Emitters(const scene::Scene& scene, bool include_dynamic)
 Emitters::~Emitters() = default;
 Emitters::Emitters(Emitters&&) noexcept = default;
 
-bool Emitters::empty() const {
-  return impl_->tree->empty() && impl_->suns.empty() && impl_->scene.environment.dark();
-}
+bool Emitters::empty() const { return !has(Reach::kLocal) && !has(Reach::kDistant); }
 std::size_t Emitters::triangleCount() const { return impl_->triangles.size(); }
 
-LightSample Emitters::sample(Point p, Normal n, Vec2 u, float choice) const {
-  std::size_t group = 0;
-  float probability = 1.0f;
-  if (!impl_->onlyLocal()) {
-    const Impl::Groups all = impl_->groupsAt(p, n);
-    float below = 0.0f;
-    probability = 0.0f;
-    // The last group that is lit takes what rounding leaves over.
-    for (std::size_t g = 0; g < impl_->groups(); ++g) {
-      const float own = all.probability(impl_->estimate(g, p, n));
-      if (!(own > 0)) continue;
-      below += probability;
-      group = g, probability = own;
-      if (choice < below + own) break;
-    }
-    choice -= below;
-  }
-  if (!(probability > 0)) return {};
-  const float rest = std::clamp(choice / probability, 0.0f, 0x1.fffffep-1f);
+bool Emitters::has(Reach reach) const {
+  return reach == Reach::kLocal ? !impl_->tree->empty() : impl_->distantCount() > 0;
+}
+
+LightSample Emitters::sample(Reach reach, Point p, Normal n, Vec2 u, float choice) const {
   LightSample s;
-  if (group == 0) {
-    const LightTree::Choice chosen = impl_->tree->choose(p, n, rest);
-    if (!(chosen.probability > 0)) return {};
+  if (reach == Reach::kLocal) {
+    const LightTree::Choice chosen = impl_->tree->choose(p, n, choice);
+    if (!(chosen.probability > 0)) return s;
     s = impl_->sampleLocal(chosen.emitter, p, u);
     s.pdf *= chosen.probability;
-  } else if (group <= impl_->suns.size()) {
-    s = impl_->sampleSun(impl_->suns[group - 1], u);
+    return s;
+  }
+  const Impl::Distant all = impl_->distantAt(n);
+  std::size_t distant = 0;
+  float probability = 0.0f, below = 0.0f;
+  // The last one that is not dark takes what rounding leaves over.
+  for (std::size_t i = 0; i < impl_->distantCount(); ++i) {
+    const float own = all.probability(impl_->estimate(i, n));
+    if (!(own > 0)) continue;
+    distant = i, probability = own, below += own;
+    if (choice < below) break;
+  }
+  if (!(probability > 0)) return s;
+  if (distant < impl_->suns.size()) {
+    s = impl_->sampleSun(impl_->suns[distant], u);
   } else {
     s.direction = impl_->environment.sample(n, u);
     s.endless = true;
@@ -320,7 +314,7 @@ LightSeen Emitters::onSurface(Point p, Normal n, Direction d, const scene::Hit& 
   const Triangle& t = impl_->triangles[first + hit.triangle];
   const auto emitter = static_cast<std::uint32_t>(impl_->local_lights.size()) + first + hit.triangle;
   if (const float chosen = impl_->tree->probability(p, n, emitter); chosen > 0)
-    seen.pdf = impl_->groupProbability(0, p, n) * chosen * trianglePdf(p, t.v0, t.v1, t.v2, d, distance);
+    seen.pdf = chosen * trianglePdf(p, t.v0, t.v1, t.v2, d, distance);
   return seen;
 }
 
@@ -333,20 +327,19 @@ void Emitters::onRay(Point p, Normal n, Direction d, float from, float to,
     if (!(t > from && t < to)) continue;
     const Vec3 off = p + t * d - disk.centre;
     if (glm::dot(off, off) > disk.radius * disk.radius) continue;
-    seen.push_back({disk.radiance, impl_->groupProbability(0, p, n) *
-                                       impl_->tree->probability(p, n, disk.light) * t * t /
+    seen.push_back({disk.radiance, impl_->tree->probability(p, n, disk.light) * t * t /
                                        (facing * kPi * disk.radius * disk.radius)});
   }
   if (to < kInfinity) return;
   for (std::size_t i = 0; i < impl_->suns.size(); ++i) {
     const Sun& sun = impl_->suns[i];
     if (sun.delta() || !sun.covers(d)) continue;
-    seen.push_back({sun.radiance(), impl_->groupProbability(i + 1, p, n) * sun.pdf()});
+    seen.push_back({sun.radiance(), impl_->distantProbability(i, n) * sun.pdf()});
   }
   const scene::Environment& environment = impl_->scene.environment;
   if (environment.dark()) return;
-  seen.push_back({environment.from(d),
-                  impl_->groupProbability(impl_->suns.size() + 1, p, n) * impl_->environment.pdf(n, d)});
+  seen.push_back(
+      {environment.from(d), impl_->distantProbability(impl_->suns.size(), n) * impl_->environment.pdf(n, d)});
 }
 
 }  // namespace relume::transport

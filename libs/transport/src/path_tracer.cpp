@@ -79,10 +79,17 @@ Vec3 PathTracer::visibility(const Vertex& vertex, const LightSample& light, std:
 }
 
 Vec3 PathTracer::sampledLight(const Vertex& vertex, PathSampler& sampler) {
+  Vec3 sum(0.0f);
+  for (const Reach reach : {Reach::kLocal, Reach::kDistant})
+    if (emitters_.has(reach)) sum += sampledLight(reach, vertex, sampler);
+  return sum;
+}
+
+Vec3 PathTracer::sampledLight(Reach reach, const Vertex& vertex, PathSampler& sampler) {
   const Vec2 place = sampler.pair();
   const float choice = sampler.pair().x;
   const std::uint32_t alpha_seed = sampler.bits();
-  const LightSample light = emitters_.sample(vertex.position, vertex.geometric, place, choice);
+  const LightSample light = emitters_.sample(reach, vertex.position, vertex.geometric, place, choice);
   if (!(light.pdf > 0) || !(glm::dot(light.direction, vertex.geometric) > 0)) return Vec3(0.0f);
   const Vec3 value = vertex.bsdf.evaluate(light.direction) * light.value / light.pdf;
   if (value == Vec3(0)) return value;

@@ -41,6 +41,7 @@ class PathTracer {
   /// Light that reaches `start` and is reflected there.
   Vec3 reflected(Vertex start, PathSampler& sampler);
   Vec3 sampledLight(const Vertex& vertex, PathSampler& sampler);
+  Vec3 sampledLight(Reach reach, const Vertex& vertex, PathSampler& sampler);
   Vec3 visibility(const Vertex& vertex, const LightSample& light, std::uint32_t alpha_seed) const;
   /// Follows a ray through what transmits; `emitted` is called with (light seen, throughput so far).
   template <class Emitted>

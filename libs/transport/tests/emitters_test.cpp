@@ -40,8 +40,11 @@ Estimate irradiance(const Emitters& emitters, Point p, Normal n, int samples = 4
   Random random(1);
   double sum = 0, squares = 0;
   for (int i = 0; i < samples; ++i) {
-    const LightSample s = emitters.sample(p, n, random.two(), random.one());
-    const double x = s.pdf > 0 ? s.value.r * std::max(glm::dot(n, s.direction), 0.0f) / s.pdf : 0.0;
+    double x = 0;
+    for (const Reach reach : {Reach::kLocal, Reach::kDistant}) {
+      const LightSample s = emitters.sample(reach, p, n, random.two(), random.one());
+      if (s.pdf > 0) x += s.value.r * std::max(glm::dot(n, s.direction), 0.0f) / s.pdf;
+    }
     sum += x, squares += x * x;
   }
   const double mean = sum / samples;
@@ -168,7 +171,8 @@ TEST(Emitters, ARayThatMeetsALightKnowsItsDensity) {
   int seen_surfaces = 0, seen_others = 0, delta = 0;
   std::vector<LightSeen> seen;
   for (int i = 0; i < 4000; ++i) {
-    const LightSample s = emitters.sample(p, n, random.two(), random.one());
+    const LightSample s =
+        emitters.sample(i % 2 ? Reach::kLocal : Reach::kDistant, p, n, random.two(), random.one());
     if (!(s.pdf > 0)) continue;
     if (s.delta) {
       ++delta;

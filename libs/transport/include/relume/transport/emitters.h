@@ -5,14 +5,14 @@
 //   [RTR] Akenine-Moeller, Haines, Hoffman. Real-Time Rendering, 3rd ed. Section 11.1: emitted radiance L_e.
 //   [CK18] Conty Estevez, Kulla. Importance Sampling of Many Lights with Adaptive Tree Splitting. HPG 2018.
 //   [KHR] KHR_lights_punctual.
-// One emitter is chosen in proportion to an estimate of the irradiance that it gives (light_tree for what has
-// a place; lights that have none beside it), half of the time; otherwise lights without a place and the rest
-// of the lights have equal chances, because none of this knows what is hidden. Then a direction: uniform in
-// solid angle for triangles and suns, in area for disks, by radiance for the environment.
-// What holds: an emitter that can be hit by a ray has a pdf for it, so sampling of light and of directions
-// combine (multiple importance sampling). Point and spot lights, and directional ones of no size, can only be
-// sampled. Limits: disks are looked for one by one on every ray, meant for some tens of them. An emissive
-// triangle is chosen by the mean of 32 look-ups of its texture.
+// What has a place and what is infinitely far away are sampled apart, because neither tells what the other is
+// worth behind walls. Of the former one is chosen in proportion to an estimate of the irradiance that it
+// gives (light_tree); of the latter half of the time by its irradiance and half of the time evenly, because
+// none of this knows what is hidden. Then a direction: uniform in solid angle for triangles and suns, in area
+// for disks, by radiance for the environment. What holds: an emitter that can be hit by a ray has a pdf for
+// it, so sampling of light and of directions combine (multiple importance sampling). Point and spot lights,
+// and directional ones of no size, can only be sampled. Limits: disks are looked for one by one on every ray,
+// meant for some tens of them. An emissive triangle is chosen by the mean of 32 look-ups of its texture.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -35,10 +35,15 @@ struct LightSample {
   float pdf = 0.0f;
 };
 
-/// Light that a ray meets, and the density with which sample() would have chosen its direction.
+/// Light that a ray meets, and the density with which sample() of its kind would have chosen its direction.
 struct LightSeen {
   Radiance radiance;
   float pdf = 0.0f;  ///< per steradian
+};
+
+enum class Reach : std::uint8_t {
+  kLocal,    ///< point and spot lights, disks, triangles
+  kDistant,  ///< directional lights, the environment
 };
 
 class Emitters {
@@ -52,9 +57,12 @@ class Emitters {
   bool empty() const;
   std::size_t triangleCount() const;
 
-  /// Light at p from the side of n (unit; zero: from all around). u, choice in [0, 1). Visibility is left to
-  /// the caller.
-  LightSample sample(Point p, Normal n, Vec2 u, float choice) const;
+  /// Whether there are emitters of that kind.
+  bool has(Reach reach) const;
+
+  /// Light of one kind at p from the side of n (unit; zero: from all around). u, choice in [0, 1). Visibility
+  /// is left to the caller. All light is the sum of both kinds.
+  LightSample sample(Reach reach, Point p, Normal n, Vec2 u, float choice) const;
 
   /// A ray from p (as above) along d meets a triangle at `hit`, `distance` metres away: what it emits towards
   /// p.
