@@ -44,7 +44,9 @@ image::Image referencePicture(const transport::Reference& reference, const pictu
   if (!relative.empty()) {
     const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
     std::nth_element(relative.begin(), middle, relative.end());
-    fmt::print(", standard error of the median pixel {:.2g} %", 100 * *middle);
+    const float percent = 100 * *middle;
+    fmt::print(", standard error of the median pixel {} %",
+               percent >= 10 ? fmt::format("{:.0f}", percent) : fmt::format("{:.2g}", percent));
   }
   fmt::print("\n");
   return std::move(result.radiance);
