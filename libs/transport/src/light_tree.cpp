@@ -52,6 +52,10 @@ float costOf(const EmitterBounds& b) {
   return b.intensity * directions * (e.x * e.y + e.y * e.z + e.z * e.x);
 }
 
+// How much the size of a group adds to its squared distance, in units of its squared radius. Of 10 to 10,000
+// lamps over a floor this made the error the same, 1.4 to 1.6 % at 256 samples; where the radius bounds the
+// distance instead (weight 1), a thousand lamps made 3.5 times the error of ten.
+constexpr float kSpread = 0.15f;
 constexpr int kBuckets = 12;
 
 /// Along which axis and before which bucket the cost of the two halves is least; axis -1: nowhere.
@@ -90,7 +94,7 @@ float EmitterBounds::importance(Point p, Normal n) const {
   const float cos_leaving = cosOfDifference(cosOfDifference(cos_axis, cos_spread), cos_extent);
   if (cos_leaving <= cos_emission) return 0.0f;
   const float cos_arriving = n == Normal(0) ? 1.0f : cosOfDifference(-glm::dot(n, d), cos_extent);
-  return std::max(intensity * cos_leaving * cos_arriving / std::max({distance2, radius2, 1e-12f}), 0.0f);
+  return std::max(intensity * cos_leaving * cos_arriving / (distance2 + kSpread * radius2 + 1e-12f), 0.0f);
 }
 
 LightTree::LightTree(std::span<const EmitterBounds> emitters) : leaf_of_(emitters.size(), kNoNode) {

@@ -2,8 +2,8 @@
 // A hierarchy of emitters by which one is chosen in proportion to a bound on the irradiance that it can give
 // to a point: as good with a thousand lights as with ten, and one step per level. Based on:
 //   [CK18] Conty Estevez, Kulla. Importance Sampling of Many Lights with Adaptive Tree Splitting. HPG 2018.
-// What differs: no splitting (one emitter for each call); inside a node's bounds the distance counts as half
-// their diagonal. Visibility is not known to it.
+// What differs: no splitting (one emitter for each call); a share of a group's squared radius is added to its
+// squared distance. Visibility is not known to it.
 #pragma once
 #include <cstdint>
 #include <span>
