@@ -37,7 +37,7 @@ def rays(build):
 
 
 def relighting(build):
-    found = run(build / "libs/relight/relume_relight_bench", "obscurance")
+    found = run(build / "libs/relight/relume_relight_bench", ".")
     return table(("benchmark", "milliseconds"), [(name.split("/real_time")[0], f"{row['real_time'] * {'ns': 1e-6, 'us': 1e-3, 'ms': 1}[row['time_unit']]:.2f}")
                                                  for name, row in found.items()])
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "relume/core/check.h"
 #include "relume/core/sampling.h"
@@ -56,6 +57,7 @@ void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most
   lanes_per_sample_ = std::bit_ceil(static_cast<std::uint32_t>(active.size()));
   if (most_samples < kLanes) lanes_per_sample_ = std::max(lanes_per_sample_, kLanes / most_samples);
   uneven_.clear();
+  in_order_ = true;
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t k = lane % lanes_per_sample_;
     used_[lane] = k < active.size();
@@ -72,19 +74,35 @@ void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most
     l.vx[lane] = s.dp_dy.x, l.vy[lane] = s.dp_dy.y, l.vz[lane] = s.dp_dy.z;
     l.limit[lane] = used_[lane] ? limit_ : -1.0f;
     l.at[lane] = sampleOf(lane) * SampleTable::kColumns + s.column;
+    in_order_ &= l.at[lane] == lane;
     l.alpha[lane] = s.alpha_stream + sampleOf(lane);
     if (used_[lane] && s.place_count > 0) uneven_.push_back(lane);
   }
 }
 
-void GroupRays::packet(std::uint32_t first, trace::RayPacket& rays) const {
+void GroupRays::packet(std::uint32_t first, trace::RayPacket& packet) const {
   const Lanes& l = lanes_;
   const std::uint32_t base = first * SampleTable::kColumns;
   const float *xs = samples_.x.data() + base, *ys = samples_.y.data() + base, *zs = samples_.z.data() + base,
               *us = samples_.u.data() + base, *vs = samples_.v.data() + base;
+  struct alignas(64) Samples {
+    float x[kLanes], y[kLanes], z[kLanes], u[kLanes], v[kLanes];
+  } sample;
+  if (in_order_) {
+    constexpr std::size_t kRow = kLanes * sizeof(float);
+    std::memcpy(sample.x, xs, kRow), std::memcpy(sample.y, ys, kRow), std::memcpy(sample.z, zs, kRow);
+    std::memcpy(sample.u, us, kRow), std::memcpy(sample.v, vs, kRow);
+  } else {
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const std::uint32_t at = l.at[i];
+      sample.x[i] = xs[at], sample.y[i] = ys[at], sample.z[i] = zs[at];
+      sample.u[i] = us[at], sample.v[i] = vs[at];
+    }
+  }
+  trace::RayPacket rays;  // of its own: what nothing else can point to becomes vector code
   for (std::uint32_t i = 0; i < kLanes; ++i) {
-    const std::uint32_t at = l.at[i];
-    const float x = xs[at], y = ys[at], z = zs[at], u = us[at] - 0.5f, v = vs[at] - 0.5f;
+    const float x = sample.x[i], y = sample.y[i], z = sample.z[i], u = sample.u[i] - 0.5f,
+                v = sample.v[i] - 0.5f, limit = l.limit[i];
     const float dx = x * l.tx[i] + y * l.bx[i] + z * l.nx[i], dy = x * l.ty[i] + y * l.by[i] + z * l.ny[i],
                 dz = x * l.tz[i] + y * l.bz[i] + z * l.nz[i];
     rays.direction_x[i] = dx, rays.direction_y[i] = dy, rays.direction_z[i] = dz;
@@ -92,18 +110,20 @@ void GroupRays::packet(std::uint32_t first, trace::RayPacket& rays) const {
     rays.origin_y[i] = l.cy[i] + (u * l.uy[i] + v * l.vy[i]);
     rays.origin_z[i] = l.cz[i] + (u * l.uz[i] + v * l.vz[i]);
     const float cosine = dx * l.gx[i] + dy * l.gy[i] + dz * l.gz[i];
-    rays.t_max[i] = cosine > RayFrame::kGrazing ? l.limit[i] : -1.0f;
+    rays.t_max[i] = cosine > RayFrame::kGrazing ? limit : -1.0f;
     rays.alpha_seed[i] = l.alpha[i] + first;
   }
+  packet = rays;
   for (const std::uint32_t i : uneven_) {
     const Source& s = sources_[texel_[i]];
     const std::uint32_t at = l.at[i];
     const auto k = static_cast<std::uint32_t>(us[at] * static_cast<float>(s.place_count));
     const Place& place = s.places[std::min(k, s.place_count - 1)];
     const Direction d = place.shading.toWorld({xs[at], ys[at], zs[at]});
-    rays.direction_x[i] = d.x, rays.direction_y[i] = d.y, rays.direction_z[i] = d.z;
-    rays.origin_x[i] = place.origin.x, rays.origin_y[i] = place.origin.y, rays.origin_z[i] = place.origin.z;
-    rays.t_max[i] = RayFrame::above(d, place.geometric_normal) ? limit_ : -1.0f;
+    packet.direction_x[i] = d.x, packet.direction_y[i] = d.y, packet.direction_z[i] = d.z;
+    packet.origin_x[i] = place.origin.x, packet.origin_y[i] = place.origin.y,
+    packet.origin_z[i] = place.origin.z;
+    packet.t_max[i] = RayFrame::above(d, place.geometric_normal) ? limit_ : -1.0f;
   }
 }
 

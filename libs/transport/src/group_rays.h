@@ -34,7 +34,7 @@ class GroupRays {
 
   /// Samples first .. first + samplesPerPacket() - 1 of the selected texels. t_max < 0: no ray, because the
   /// lane is not used or the direction is below the surface.
-  void packet(std::uint32_t first, trace::RayPacket& rays) const;
+  void packet(std::uint32_t first, trace::RayPacket& packet) const;
 
   /// The column of a texel in the sample table.
   std::uint32_t columnOf(std::uint32_t texel) const { return sources_[texel].column; }
@@ -76,6 +76,7 @@ class GroupRays {
   std::array<std::uint32_t, kLanes> texel_{};
   std::array<bool, kLanes> used_{};
   std::uint32_t lanes_per_sample_ = kLanes;
+  bool in_order_ = false;              // lane i takes column i of the same sample
   std::vector<std::uint32_t> uneven_;  // lanes whose texels have places
 };
 

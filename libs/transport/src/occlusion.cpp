@@ -158,7 +158,7 @@ class GroupSolver {
       traced_ += kept[i];
       if (!rgb_.empty() || !directions_.empty()) gatherVectors(tally, i, values, count);
     }
-    if (options_.smoothed)
+    if (options_.smoothed || first == 0)
       addNetVariances({values, std::size_t{count} * kColumns}, mean, scratch_, variance_);
   }
 
@@ -220,8 +220,12 @@ class GroupSolver {
     keepDirections(in_chunk);
   }
 
+  std::uint32_t firstChunk() const {
+    return std::min(options_.target_error > 0.0f ? options_.min_samples : options_.max_samples, kMaxBatch);
+  }
+
   float standardError(std::uint32_t i, std::uint32_t n) {
-    if (options_.smoothed) return standardErrorOf(variance_[i], tallies_[i].kept, n);
+    if (options_.smoothed || n <= firstChunk()) return standardErrorOf(variance_[i], tallies_[i].kept, n);
     const std::uint32_t column = rays_.columnOf(i);
     for (std::size_t s = 0; s < n; ++s)
       column_[s] = values_[s * kColumns + i], codes_[s] = samples_.code[s * kColumns + column];
@@ -231,8 +235,7 @@ class GroupSolver {
   /// Back faces after any-hit rays, which do not tell them. Of texels of which enough rays are blocked (at
   /// most so many can have met a back face), a few blocked ones are traced again, now to their first hits.
   void findBuried(std::uint32_t group) {
-    const std::uint32_t known =
-        std::min(options_.target_error > 0.0f ? options_.min_samples : options_.max_samples, kMaxBatch);
+    const std::uint32_t known = firstChunk();
     std::vector<std::uint32_t>& suspects = active_;
     suspects.clear();
     for (std::uint32_t i = 0; i < group; ++i)
