@@ -57,6 +57,9 @@ def line_plot(title, x_label, y_label, series, log_x=False, log_y=False):
         out.append(f'<text x="{LEFT - 8}" y="{sy(y) + 4:.1f}" text-anchor="end" fill="#444">{_label(y)}</text>')
     out.append(f'<rect x="{LEFT}" y="{TOP}" width="{WIDTH - LEFT - RIGHT}" height="{HEIGHT - TOP - BOTTOM}" fill="none" stroke="#9ca3af"/>')
     out.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 16}" text-anchor="middle" fill="#111">{html.escape(x_label)}</text>')
+    # The names stand in the upper corner that fewer points are in.
+    upper = [sx(x) for _, points in series for x, y in points if sy(y) < TOP + 18 * len(series) + 24]
+    legend = LEFT if sum(x < WIDTH / 2 for x in upper) <= sum(x >= WIDTH / 2 for x in upper) else WIDTH - RIGHT - 190
     middle = (TOP + HEIGHT - BOTTOM) / 2
     out.append(f'<text x="18" y="{middle}" text-anchor="middle" fill="#111" transform="rotate(-90 18 {middle})">{html.escape(y_label)}</text>')
     for i, (name, points) in enumerate(series):
@@ -65,7 +68,7 @@ def line_plot(title, x_label, y_label, series, log_x=False, log_y=False):
         out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
         out += [f'<circle cx="{sx(x):.1f}" cy="{sy(y):.1f}" r="3" fill="{colour}"/>' for x, y in points]
         if len(series) > 1:
-            out.append(f'<rect x="{LEFT + 12}" y="{TOP + 12 + 18 * i}" width="14" height="3" fill="{colour}"/>')
-            out.append(f'<text x="{LEFT + 32}" y="{TOP + 18 + 18 * i}" fill="#111">{html.escape(name)}</text>')
+            out.append(f'<rect x="{legend + 12}" y="{TOP + 12 + 18 * i}" width="14" height="3" fill="{colour}"/>')
+            out.append(f'<text x="{legend + 32}" y="{TOP + 18 + 18 * i}" fill="#111">{html.escape(name)}</text>')
     out.append("</svg>\n")
     return "\n".join(out)

@@ -199,7 +199,7 @@ class Bake(CliTest):
             if event["stage"] == "obscurance" and 0.5 < event["fraction"] < 0.9:
                 break
         process.send_signal(signal.SIGINT)
-        process.stderr.read()
+        self.assertIn("run the same command again to go on", process.stderr.read())
         self.assertEqual(process.wait(), 130)
         process.stderr.close()
         self.assertFalse(self.baked.exists(), "a half-made file was left")

@@ -195,7 +195,8 @@ std::uint64_t TexelStore::complete(const TexelSolver& solver, Progress& progress
     }
   } catch (const Error& error) {
     if (error.code() == ErrorCode::kInterrupted || error.code() == ErrorCode::kOutOfMemory) save();
-    throw;
+    if (error.code() != ErrorCode::kInterrupted || file_.empty()) throw;
+    throw Error(ErrorCode::kInterrupted, "", "interrupted", "run the same command again to go on");
   }
   save();
   return rays;

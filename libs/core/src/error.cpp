@@ -84,8 +84,7 @@ Error::Error(ErrorCode code, std::string subject, std::string problem, std::stri
 std::string Warning::text() const { return oneLine(subject, problem, remedy); }
 
 void Progress::throwIfCancelled() const {
-  if (cancelled())
-    throw Error(ErrorCode::kInterrupted, "", "interrupted", "run the same command again to go on");
+  if (cancelled()) throw Error(ErrorCode::kInterrupted, "", "interrupted");
 }
 
 }  // namespace relume
