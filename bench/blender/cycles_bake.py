@@ -13,10 +13,12 @@ import json
 import os
 import sys
 import time
-import traceback
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from inside_blender import leave_after  # noqa: E402
 
 
 def build_mesh(data, smooth):
@@ -165,11 +167,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    try:  # Blender leaves with 0 after an exception of a script
-        main(sys.argv[sys.argv.index("--") + 1])
-    except BaseException:
-        traceback.print_exc()
-        sys.stderr.flush()
-        os._exit(1)
-    sys.stdout.flush()
-    os._exit(0)
+    leave_after(main)

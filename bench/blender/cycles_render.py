@@ -11,11 +11,13 @@ import json
 import math
 import os
 import sys
-import traceback
 
 import bpy
 import mathutils
 import numpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from inside_blender import leave_after  # noqa: E402
 
 for name, kind in (("bool", bool), ("int", int), ("float", float), ("object", object)):
     if name not in numpy.__dict__:  # Blender 3.4's importer asks numpy for names that 1.24 dropped
@@ -110,11 +112,4 @@ def main(path):
 
 
 if __name__ == "__main__":
-    try:  # Blender leaves with 0 after an exception of a script
-        main(sys.argv[sys.argv.index("--") + 1])
-    except BaseException:
-        traceback.print_exc()
-        sys.stderr.flush()
-        os._exit(1)
-    sys.stdout.flush()
-    os._exit(0)
+    leave_after(main)
