@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <system_error>
 
 #include "pages.h"
@@ -13,6 +14,7 @@
 #include "relume/core/memory.h"
 #include "relume/core/version.h"
 #include "relume/image/io.h"
+#include "report_gather.h"
 #include "scene_digest.h"
 #include "texel_store.h"
 
@@ -136,6 +138,8 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
   input.add(p.structure);
   for (const Placement& placement : placements(p.scene)) input.add(placement.world_from_local);
 
+  std::optional<ReportGatherer> gatherer;
+  if (options.report) gatherer.emplace(p, options);
   double tracing_seconds = 0;
   for (const PreparedLayer& prepared_layer : p.layers) {
     const LayerContext context{
@@ -159,8 +163,10 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
     layer.samples = p.quality.max_samples;  // per texel at most; what was really spent depends on the cache
     layer.error_estimate = numbers.error_estimate = relativeError(points);
     for (std::size_t i = 0; i < points.valid.size(); ++i) asset.atlas.valid[i] &= points.valid[i];
+    LayerReport* report = gatherer ? &gatherer->add(prepared_layer, points) : nullptr;
     for (PointPlane& plane : points.planes) {
-      layer.planes.push_back(finishPlane(p.texels, seams, points.valid, std::move(plane)));
+      layer.planes.push_back(finishPlane(p.texels, seams, points.valid, std::move(plane), report));
+      report = nullptr;  // seams are told of the layer's first plane
       numbers.raw_bytes += layer.planes.back().values.size() * sizeof(float);
     }
     asset.layers.push_back(std::move(layer));
@@ -174,6 +180,8 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
   statistics.rays_per_second =
       tracing_seconds > 0 ? static_cast<double>(statistics.rays) / tracing_seconds : 0;
 
+  if (gatherer) result.report = gatherer->take(asset.atlas.valid);
+  gatherer.reset();
   p.tracer.reset();
   p.texels = {};
   seams = {};

@@ -89,13 +89,14 @@ PointLayer finishRows(const RowLayout& layout, Correction correction, const atla
   PointPlane bent{.name = "bent", .channels = 3, .direction = true, .values = {}};
   value.values.resize(points * channels);
   if (layout.bent) bent.values.resize(points * 3);
-  layer.error.resize(points), layer.valid.resize(points);
+  layer.error.resize(points), layer.valid.resize(points), layer.back_share.resize(points);
   for (std::size_t i = 0; i < points; ++i) {
     const float* r = rows.data() + i * row;
     for (std::size_t c = 0; c < channels; ++c) value.values[i * channels + c] = r[c];
     for (std::size_t c = 0; layout.bent && c < 3; ++c) bent.values[i * 3 + c] = r[channels + c];
     layer.error[i] = r[layout.errorAt()];
-    layer.valid[i] = r[layout.backAt()] <= kBuriedShare;
+    layer.back_share[i] = r[layout.backAt()];
+    layer.valid[i] = layer.back_share[i] <= kBuriedShare;
   }
   if (filter) {
     std::vector<float> left(points);

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report_numbers.h"
+
 namespace relume::bake {
 
 asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::SeamSample> seams,
-                         std::span<const std::uint8_t> valid, PointPlane plane) {
+                         std::span<const std::uint8_t> valid, PointPlane plane, LayerReport* report) {
   asset::Plane out;
   out.name = plane.name;
   out.channels = plane.channels;
@@ -16,12 +18,14 @@ asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::Sea
   atlas::scatter(texels, plane.values, plane.channels, valid, out.values, covered);
   plane.values = {};
   atlas::dilate(texels.width, texels.height, texels.pages, plane.channels, out.values, covered, &texels);
+  if (report) report->seams_before = seamError(seams, plane.channels, out.values);
   constexpr float kFidelity = 0.1f;
   if (!plane.direction)
     atlas::stitchSeams(seams, plane.channels, out.values, kFidelity,
                        covered);  // a bent normal may turn at a crease
   if (plane.unit_interval)
     for (float& v : out.values) v = std::clamp(v, 0.0f, 1.0f);
+  if (report) report->seams_after = seamError(seams, plane.channels, out.values);
   if (plane.direction) {
     for (std::size_t i = 0; i + 2 < out.values.size(); i += 3) {
       Vec3 d(out.values[i], out.values[i + 1], out.values[i + 2]);

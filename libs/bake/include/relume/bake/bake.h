@@ -11,6 +11,7 @@
 #include "relume/atlas/atlas.h"
 #include "relume/bake/layer_spec.h"
 #include "relume/bake/quality.h"
+#include "relume/bake/report.h"
 #include "relume/bake/statistics.h"
 #include "relume/core/error.h"
 #include "relume/core/progress.h"
@@ -28,12 +29,14 @@ struct BakeOptions {
   std::string isa;               ///< see trace::TracerOptions
   std::filesystem::path cache;   ///< folder for finished and interrupted work; empty: none
   std::uint64_t max_memory = 0;  ///< bytes; 0: no limit
+  bool report = false;           ///< also gather BakeResult::report
 };
 
 struct BakeResult {
   std::vector<std::byte> glb;  ///< the baked file
   asset::Asset asset;          ///< what it carries
   Statistics statistics;
+  Report report;  ///< empty unless asked for
   Warnings warnings;
 };
 

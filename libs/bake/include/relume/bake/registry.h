@@ -59,6 +59,7 @@ struct PointLayer {
   std::vector<PointPlane> planes;
   std::vector<float> error;         ///< standard error per point
   std::vector<std::uint8_t> valid;  ///< 0: buried in geometry
+  std::vector<float> back_share;    ///< share of rays that met back faces; empty: not known
 };
 
 struct LayerJob {
