@@ -72,6 +72,8 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   {
     Stage stage(progress, "import", 1);
     p->scene = scene::gltf::import(document, warnings);
+    if (options.lights) p->scene.lights = *options.lights;
+    if (options.environment) p->scene.environment = *options.environment;
   }
   if (p->scene.triangleCount() == 0)
     throw Error(
@@ -118,7 +120,7 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
 std::uint64_t forecastBytes(const Prepared& p) {
   std::uint64_t most = 0;
   for (const PreparedLayer& layer : p.layers) {
-    const bool rgb = layer.kind->name == "spectral";
+    const bool rgb = layer.kind->name == "spectral" || layer.kind->name == "lightmap";
     const auto bent = layer.parameters.find("bent");
     const bool has_bent = bent != layer.parameters.end() && std::get<bool>(bent->second);
     const std::uint64_t channels = (rgb ? 3 : 1) + (has_bent ? 3 : 0);

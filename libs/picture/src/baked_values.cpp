@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "baked_values.h"
+#include "relume/picture/baked_values.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "baked_values.h"
+#include "relume/picture/baked_values.h"
 #include "layered_tracer.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"

@@ -6,7 +6,7 @@
 #pragma once
 #include <span>
 
-#include "baked_values.h"
+#include "relume/picture/baked_values.h"
 #include "direct_light.h"
 
 namespace relume::picture {

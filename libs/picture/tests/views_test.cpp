@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "baked_values.h"
+#include "relume/picture/baked_values.h"
 #include "hand_made.h"
 #include "relume/image/colour.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rays of the texels of a group, packet by packet: where they start and where they go.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,9 @@
 
 namespace relume::transport {
 
+/// Of a surface: where its normals point to, or the other.
+enum class Side : std::uint8_t { kFront, kBack };
+
 class GroupRays {
  public:
   static constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
@@ -22,7 +26,7 @@ class GroupRays {
             std::uint64_t seed, float limit);
 
   /// group: indices into Texels::points, at most kGroupTexels.
-  void begin(std::span<const std::uint32_t> group);
+  void begin(std::span<const std::uint32_t> group, Side side = Side::kFront);
 
   /// Packets from now on hold these texels (places in the group, increasing). Where they are few, a packet
   /// holds several samples of each, at most `most_samples`, a power of two.
@@ -35,6 +39,22 @@ class GroupRays {
   /// Samples first .. first + samplesPerPacket() - 1 of the selected texels. t_max < 0: no ray, because the
   /// lane is not used or the direction is below the surface.
   void packet(std::uint32_t first, trace::RayPacket& packet) const;
+
+  struct Normals {
+    Normal geometric, shading;
+  };
+  /// Of the place where a lane's ray starts, in the packet that begins with sample `first`.
+  Normals normals(std::uint32_t first, std::uint32_t lane) const;
+
+  /// A place in the footprint of a texel of the group, for u in [0, 1)^2.
+  struct Spot {
+    Point origin;  ///< off the surface: where rays start
+    Normal geometric_normal, shading_normal;
+  };
+  Spot spot(std::uint32_t texel, Vec2 u) const;
+
+  /// Seed of a texel's decisions about alpha.
+  std::uint32_t alphaStream(std::uint32_t texel) const { return sources_[texel].alpha_stream; }
 
   /// The column of a texel in the sample table.
   std::uint32_t columnOf(std::uint32_t texel) const { return sources_[texel].column; }
@@ -52,6 +72,10 @@ class GroupRays {
     std::uint32_t column = 0, alpha_stream = 0;
     std::uint32_t place_count = 0;  // 0: a parallelogram about centre
     std::array<Place, 16> places;
+    const Place& place(float u) const {
+      return places[std::min(static_cast<std::uint32_t>(u * static_cast<float>(place_count)),
+                             place_count - 1)];
+    }
   };
   struct alignas(64) Lanes {
     float tx[kLanes], ty[kLanes], tz[kLanes], bx[kLanes], by[kLanes], bz[kLanes], nx[kLanes], ny[kLanes],
@@ -64,7 +88,7 @@ class GroupRays {
     std::uint32_t alpha[kLanes];
   };
 
-  void prepare(const atlas::SurfacePoint& point, Source& source) const;
+  void prepare(const atlas::SurfacePoint& point, float side, Source& source) const;
 
   const scene::Scene& scene_;
   const atlas::Texels& texels_;

@@ -19,7 +19,7 @@
 namespace relume::bake {
 
 struct ParameterSpec {
-  enum class Type : std::uint8_t { kLength, kChoice, kFlag };
+  enum class Type : std::uint8_t { kLength, kChoice, kFlag, kCount };
   std::string name;
   Type type = Type::kLength;
   std::string
@@ -31,6 +31,7 @@ struct ParameterSpec {
 /// What a row may use to compute its texels.
 struct LayerContext {
   const trace::Tracer& tracer;
+  const atlas::Atlas& atlas;
   const atlas::Texels& texels;
   QualitySettings quality;
   std::uint64_t seed = 1;
@@ -73,6 +74,8 @@ struct LayerKind {
   std::string emitters, transport, receivers, codec;
   std::vector<ParameterSpec> parameters;
   LayerJob (*prepare)(const LayerContext&, const Parameters&) = nullptr;
+
+  bool has(std::string_view parameter) const;
 };
 
 const std::vector<LayerKind>& registry();
