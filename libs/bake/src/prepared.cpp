@@ -8,6 +8,7 @@
 #include <map>
 
 #include "relume/core/memory.h"
+#include "relume/transport/emitters.h"
 #include "scene_digest.h"
 
 namespace relume::bake {
@@ -33,6 +34,14 @@ atlas::AtlasOptions withinMemory(const BakeOptions& options) {
   const std::uint64_t bytes = options.max_memory ? options.max_memory : machineBytes();
   if (bytes) result.most_texels = std::min(result.most_texels, bytes / kBytesPerTexel);
   return result;
+}
+
+/// A scene in which nothing shines gets a white sky: a black bake helps nobody.
+void requireLight(scene::Scene& scene, const std::vector<PreparedLayer>& layers, Warnings& warnings) {
+  const auto needs = [](const PreparedLayer& layer) { return layer.kind->needs_light; };
+  if (std::none_of(layers.begin(), layers.end(), needs) || !transport::Emitters(scene).empty()) return;
+  warnings.push_back({scene.name, "nothing static in it shines", "it is lit by a white sky; give --lights"});
+  scene.environment.radiance = Radiance(1.0f);
 }
 
 void warnOfScale(const scene::Scene& scene, float diagonal, Warnings& warnings) {
@@ -82,6 +91,7 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   const float diagonal = p->scene.bounds().diagonal();
   p->layers = resolveLayers(options, diagonal);
   warnOfScale(p->scene, diagonal, warnings);
+  requireLight(p->scene, p->layers, warnings);
   stopwatch.lap("import");
 
   p->atlas = atlas::buildAtlas(p->scene, withinMemory(options), warnings, progress);

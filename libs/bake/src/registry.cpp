@@ -77,7 +77,8 @@ std::vector<LayerKind> makeRegistry() {
              "full",
              {"full", "lambert"},
              "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"}},
-       .prepare = prepareLightmap},
+       .prepare = prepareLightmap,
+       .needs_light = true},
   };
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "relume/core/check.h"
@@ -19,6 +20,21 @@ namespace {
 // the others share the texel's shading normal. In a furnished room, 45 degrees instead of 14 raised the
 // error of all texels from 3.4 to 3.7 %.
 constexpr float kFoldCosine = 0.97f;
+
+/// Turns frames about their normals by an angle that is the block's own. All blocks have the same directions
+/// to send rays along; what these miss together on walls that are alike would otherwise not average out: the
+/// radiance inside a Menger sponge was 3 % too low.
+class Turn {
+ public:
+  explicit Turn(std::uint32_t bits) : cosine_(std::cos(angleOf(bits))), sine_(std::sin(angleOf(bits))) {}
+  Frame operator()(const Frame& f) const {
+    return {cosine_ * f.t + sine_ * f.b, cosine_ * f.b - sine_ * f.t, f.n};
+  }
+
+ private:
+  static float angleOf(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (2.0f * kPi * 0x1p-24f); }
+  float cosine_, sine_;
+};
 
 }  // namespace
 
@@ -38,8 +54,14 @@ void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& so
   const std::uint32_t x = point.texel % width, y = point.texel / width % height;
   source.column = y % kGroupSide * kGroupSide + x % kGroupSide;
   source.alpha_stream = streamOf(seed_, point.texel, 2);
+  const std::uint32_t page = point.texel / (width * height);
+  const std::uint32_t block =
+      hashCombine(streamOf(seed_, page, 3), (y / kGroupSide) * width + x / kGroupSide);
+  const Turn turn(block);
+  source.shift = {static_cast<float>(block >> 16) * 0x1p-16f, static_cast<float>(block & 0xffffu) * 0x1p-16f};
   const Normal own = side * point.geometric_normal;
   source.frame = RayFrame(side * point.shading_normal, own);
+  source.frame.shading = turn(source.frame.shading);
   source.centre = trace::offsetOrigin(point.position, own);
   source.dp_dx = point.dp_dx, source.dp_dy = point.dp_dy;
   source.place_count =
@@ -50,7 +72,7 @@ void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& so
     if (normal == Normal(0)) normal = own;  // a sliver
     const bool folded = glm::dot(normal, own) < kFoldCosine;
     source.places[i] = {trace::offsetOrigin(sample.position, normal), normal,
-                        folded ? Frame::about(normal) : source.frame.shading};
+                        folded ? turn(Frame::about(normal)) : source.frame.shading};
   }
 }
 

@@ -53,6 +53,9 @@ class GroupRays {
   };
   Spot spot(std::uint32_t texel, Vec2 u) const;
 
+  /// The block's own, in [0, 1)^2: to set its samples apart from those of other blocks.
+  Vec2 shift(std::uint32_t texel) const { return sources_[texel].shift; }
+
   /// Seed of a texel's decisions about alpha.
   std::uint32_t alphaStream(std::uint32_t texel) const { return sources_[texel].alpha_stream; }
 
@@ -69,6 +72,7 @@ class GroupRays {
     RayFrame frame{Normal(0, 0, 1), Normal(0, 0, 1)};
     Point centre;
     Vec3 dp_dx, dp_dy;
+    Vec2 shift{0.0f};
     std::uint32_t column = 0, alpha_stream = 0;
     std::uint32_t place_count = 0;  // 0: a parallelogram about centre
     std::array<Place, 16> places;

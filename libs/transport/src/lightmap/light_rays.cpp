@@ -13,6 +13,12 @@ constexpr float kShortOfLight = 1.0f - 1e-5f;
 // Apart from the seeds of the gather rays.
 constexpr std::uint32_t kAlphaSeeds = 0x40000000u;
 
+/// In [0, 1), around the end.
+float shifted(float u, float by) {
+  const float sum = u + by;
+  return sum < 1.0f ? sum : std::min(sum - 1.0f, 0x1.fffffep-1f);
+}
+
 }  // namespace
 
 void LightRays::trace(const GroupRays& rays, std::span<const std::uint32_t> active, std::uint32_t first,
@@ -23,10 +29,12 @@ void LightRays::trace(const GroupRays& rays, std::span<const std::uint32_t> acti
     for (std::uint32_t s = 0; s < count; ++s) {
       for (const std::uint32_t texel : active) {
         const std::size_t at = std::size_t{first + s} * kColumns + rays.columnOf(texel);
+        const Vec2 shift = rays.shift(texel);
         const GroupRays::Spot spot = rays.spot(texel, {table_.u[at], table_.v[at]});
         const LightSample light =
             emitters_.sample(reach, spot.origin, spot.geometric_normal,
-                             {table_.place_x[at], table_.place_y[at]}, table_.choice[at]);
+                             {shifted(table_.place_x[at], shift.x), shifted(table_.place_y[at], shift.y)},
+                             shifted(table_.choice[at], 0.5f * (shift.x + shift.y)));
         if (!(light.pdf > 0) || !RayFrame::above(light.direction, spot.geometric_normal)) continue;
         const float cosine = glm::dot(light.direction, spot.shading_normal);
         if (!(cosine > 0)) continue;

@@ -74,6 +74,7 @@ struct LayerKind {
   std::string emitters, transport, receivers, codec;
   std::vector<ParameterSpec> parameters;
   LayerJob (*prepare)(const LayerContext&, const Parameters&) = nullptr;
+  bool needs_light = false;  ///< of the scene's own lights and environment
 
   bool has(std::string_view parameter) const;
 };
