@@ -90,8 +90,27 @@ transport::ReferenceOptions truthOf(const asset::Layer& layer, const VerifyOptio
   return truth;
 }
 
-std::vector<Place> choosePlaces(const scene::Scene& scene, const picture::BakedValues& baked,
+/// Another surface lies in the same plane: what is true there depends on which of the two is asked.
+bool coincides(const trace::Tracer& tracer, const scene::Hit& own, float diagonal) {
+  const scene::Scene& scene = tracer.scene();
+  const Point p = scene::worldPosition(scene, own);
+  const Normal n = scene::geometricNormal(scene, own.instance, own.triangle);
+  const float near = 3e-5f * diagonal;
+  trace::Ray ray{p + near * n, -n, 2 * near};
+  for (int layer = 0; layer < 4; ++layer) {
+    const trace::RayHit hit = tracer.intersect(ray);
+    if (!hit) return false;
+    if (hit.where.instance != own.instance || hit.where.triangle != own.triangle) return true;
+    ray.origin = trace::offsetOrigin(p, -n);
+    ray.t_max = near;
+  }
+  return false;
+}
+
+std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::BakedValues& baked,
                                 const VerifyOptions& options, std::size_t& skipped) {
+  const scene::Scene& scene = tracer.scene();
+  const float diagonal = scene.bounds().diagonal();
   const SurfaceSampler surface(scene);
   std::vector<Place> places;
   if (surface.empty()) return places;
@@ -102,7 +121,8 @@ std::vector<Place> choosePlaces(const scene::Scene& scene, const picture::BakedV
     const auto place = baked.locate(hit);
     const auto index = place ? baked.tableIndex(*place) : std::nullopt;
     if (!index || !baked.table().valid[*index] || scene::opacityAt(scene, hit) < 0.5f ||
-        scene::geometricNormal(scene, hit.instance, hit.triangle) == Normal(0)) {
+        scene::geometricNormal(scene, hit.instance, hit.triangle) == Normal(0) ||
+        coincides(tracer, hit, diagonal)) {
       ++skipped;
       continue;
     }
@@ -119,7 +139,8 @@ Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset
   const picture::BakedValues baked(scene, &asset, picture::View::kOcclusion, layer.name);
   Verification result;
   result.layer = layer.name, result.error_estimate = layer.error_estimate;
-  const std::vector<Place> places = choosePlaces(scene, baked, options, result.skipped);
+  const transport::Reference reference(scene);
+  const std::vector<Place> places = choosePlaces(reference.tracer(), baked, options, result.skipped);
   if (places.empty()) throw Error(ErrorCode::kEmptyScene, scene.name, "no baked surface was found to verify");
   result.points = places.size();
 
@@ -128,7 +149,6 @@ Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset
     receivers.push_back({scene::worldPosition(scene, place.hit),
                          scene::geometricNormal(scene, place.hit.instance, place.hit.triangle),
                          scene::shadingNormal(scene, place.hit)});
-  const transport::Reference reference(scene);
   transport::ReferenceOptions truth = truthOf(layer, options);
   const auto first = reference.irradiance(receivers, truth, progress);
   truth.seed += 0x5851f42d4c957f2du;
@@ -149,11 +169,16 @@ Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset
   if (!(result.mean_true > 0))
     throw Error(ErrorCode::kEmptyScene, scene.name, "no light reaches the baked surfaces",
                 "give the --lights that it was baked with");
-  double spread = 0;
-  for (const double product : products) spread += (product - product_sum) * (product - product_sum) / (n * n);
+  double spread = 0, difference2 = 0;
+  const double difference = result.mean_baked - result.mean_true;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    spread += (products[i] - product_sum) * (products[i] - product_sum) / (n * n);
+    const double d = places[i].baked - truths[i] - difference;
+    difference2 += d * d / (n * n);
+  }
   result.bias = result.mean_baked / result.mean_true - 1;
   result.truth_noise = std::sqrt(noise2) / result.mean_true;
-  result.bias_error = result.truth_noise / std::sqrt(n);
+  result.bias_error = std::sqrt(difference2) / result.mean_true;
   result.rmse = std::sqrt(std::max(product_sum, 0.0)) / result.mean_true;
   result.rmse_error =
       std::sqrt(spread) / (2 * std::max(result.rmse, 1e-9) * result.mean_true * result.mean_true);

@@ -96,10 +96,6 @@ class GroupSolver {
         light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect) {}
 
   std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays(); }
-  ~GroupSolver() {
-      fprintf(stderr, "gather %.1f M light %.1f M\n", double(gatherer_.rays()) * 1e-6,
-              double(light_rays_.rays()) * 1e-6);
-  }
 
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
              LightmapResult& result) {
@@ -111,7 +107,10 @@ class GroupSolver {
     const float allowed = squaredTolerance(group);
     if (shared_.direct())
       sample(lightMinimum(), allowed, light_,
-             [&](auto first, auto count) { light_rays_.trace(rays_, all_, first, count, values_); });
+             [&](auto first, auto count) { light_rays_.trace(rays_, all_, first, count,
+                          [&](std::uint32_t texel, std::uint32_t sample, Vec3 irradiance, float) {
+                            values_[std::size_t{sample} * kColumns + texel] += irradiance;
+                          }); });
     // Also for direct light alone: without a gather ray nothing tells whether a texel lies inside something.
     sample(options_.min_samples, allowed, gathered_, [&](auto first, auto count) { gather(first, count); });
     for (std::uint32_t i = 0; i < group.size(); ++i) {
@@ -263,8 +262,6 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
   result.rays = solveGroups(
       impl.groups, impl.texels, which, progress, [&] { return std::make_unique<GroupSolver>(shared); },
       [&](GroupSolver& solver, auto group, auto slots) { solver.solve(group, slots, result); });
-    fprintf(stderr, "cache rays %.1f M; mean %g; points %zu\n", double(impl.cache->rays()) * 1e-6,
-            double(impl.mean), count);
   if (first) result.rays += impl.cache->rays();
   return result;
 }

@@ -31,8 +31,16 @@ struct RadianceCache::Builder {
   /// What was found from one side of the surfaces.
   struct Found {
     std::vector<Vec3> direct;       // E, by entry
+    std::vector<Vec3> glossy;       // of that, what glossy lobes reflect
     std::vector<SideOfTexel> ends;  // [entry][gather_samples]
-    std::vector<Vec3> reflectance;  // by entry
+    std::vector<Reflectance> reflectance;
+    std::vector<std::uint8_t> column;  // of the sample table
+
+    std::size_t size() const { return reflectance.size(); }
+    void resize(std::size_t entries, std::uint32_t samples) {
+      direct.resize(entries), glossy.resize(entries), column.resize(entries);
+      ends.resize(entries * samples, kNoTexel);
+    }
   };
 
   Builder(RadianceCache& the_cache, const trace::Tracer& the_tracer, const Emitters& the_emitters,
@@ -47,14 +55,14 @@ struct RadianceCache::Builder {
         options(the_options),
         progress(the_progress),
         directions(options.gather_samples, options.gather_samples, options.seed, BlockSamples::kShared),
-        lights(options.light_samples, options.light_samples, options.seed, BlockSamples::kShared) {}
+        lights(options.light_samples, options.light_samples, options.seed, BlockSamples::kShared),
+        gloss(directions.z) {}
 
   void build() {
     const std::size_t points = texels.points.size();
     front.reflectance = reflectances(tracer.scene(), texels, options.materials);
     cache.back_share_.resize(points);
-    front.direct.resize(points);
-    front.ends.assign(points * options.gather_samples, kNoTexel);
+    front.resize(points, options.gather_samples);
     wanted.assign(points, 0);
     gatherFronts();
     std::vector<std::uint8_t> buried(points);
@@ -75,7 +83,6 @@ struct RadianceCache::Builder {
     Gatherer gatherer;
     LightRays light_rays;
     std::vector<std::uint32_t> active;
-    std::vector<Vec3> values;
   };
 
   void gatherGroup(Worker& w, std::span<const std::uint32_t> group, Side side,
@@ -84,26 +91,37 @@ struct RadianceCache::Builder {
     w.rays.begin(group, side);
     w.active.resize(group.size());
     for (std::uint32_t i = 0; i < group.size(); ++i) w.active[i] = i;
-    if (!emitters.empty()) {
-      w.values.assign(std::size_t{options.light_samples} * LightTable::kColumns, Vec3(0.0f));
-      w.light_rays.trace(w.rays, w.active, 0, options.light_samples, w.values);
-      for (std::size_t s = 0; s < options.light_samples; ++s)
-        for (std::size_t i = 0; i < group.size(); ++i)
-          found.direct[slots[i]] += w.values[s * LightTable::kColumns + i];
-      for (const std::uint32_t slot : slots) found.direct[slot] /= static_cast<float>(options.light_samples);
-    }
+    for (std::uint32_t i = 0; i < group.size(); ++i)
+      found.column[slots[i]] = static_cast<std::uint8_t>(w.rays.columnOf(i));
+    const float light_share = 1.0f / static_cast<float>(options.light_samples);
+    const auto arrived = [&](std::uint32_t slot, Vec3 irradiance, ggx::Reflected gloss_share) {
+      const Reflectance& r = found.reflectance[slot];
+      found.direct[slot] += irradiance;
+      found.glossy[slot] += irradiance * (r.scale * gloss_share.scale + r.bias * gloss_share.bias);
+    };
+    w.light_rays.trace(w.rays, w.active, 0, options.light_samples,
+                       [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float cosine) {
+                         const Reflectance& r = found.reflectance[slots[texel]];
+                         arrived(slots[texel], irradiance * light_share,
+                                 r.glossy() ? ggx::reflected(cosine, GlossTable::alphaOf(r.roughness))
+                                            : ggx::Reflected{0, 0});
+                       });
     std::array<std::uint32_t, kGroupTexels> met_back{};
     w.rays.select(w.active, n);
+    const float ray_share = kPi / static_cast<float>(n);
     w.gatherer.trace(w.rays, 0, n, [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
       const std::uint32_t slot = slots[texel];
-      found.direct[slot] += arrival.emitted * (kPi / static_cast<float>(n));
+      if (arrival.emitted != Vec3(0.0f))
+        arrived(slot, arrival.emitted * ray_share, glossOf(found, slot, sample));
       found.ends[std::size_t{slot} * n + sample] = arrival.surface;
       met_back[texel] += arrival.surface != kNoTexel && (arrival.surface & kBackBit) != 0;
     });
     for (std::size_t i = 0; i < group.size(); ++i) {
       const float share = static_cast<float>(met_back[i]) / static_cast<float>(n);
       if (side == Side::kFront) cache.back_share_[group[i]] = share;
-      if (met_back[i] > 0 && share <= kBuriedShare) want(slots[i], found);
+      // What is inside a body sees backs that nobody else does; no light finds it either.
+      if (met_back[i] > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
+        want(slots[i], found);
     }
   }
 
@@ -160,8 +178,7 @@ struct RadianceCache::Builder {
         });
       }
       if (blocks.empty()) return;
-      back.direct.resize(next);
-      back.ends.resize(std::size_t{next} * options.gather_samples, kNoTexel);
+      back.resize(next, options.gather_samples);
       std::vector<std::uint64_t> rays(blocks.size());
       parallelFor(
           blocks.size(), 64,
@@ -178,35 +195,49 @@ struct RadianceCache::Builder {
     }
   }
 
-  /// E of an entry from what its rays find in the cache of the bounce before.
-  Vec3 gathered(const Found& found, std::size_t entry) const {
+  /// How glossy lobes weigh the light of a gather sample.
+  ggx::Reflected glossOf(const Found& found, std::size_t entry, std::uint32_t sample) const {
+    return gloss.at(found.reflectance[entry].roughness,
+                    std::size_t{sample} * SampleTable::kColumns + found.column[entry]);
+  }
+
+  /// E that an entry's rays find in the cache of the bounce before, and the radiance that then leaves it.
+  void reflect(const Found& found, std::size_t entry, Vec3& indirect, Vec3& out) const {
     const std::uint32_t n = options.gather_samples;
-    Vec3 sum(0.0f);
+    const Reflectance& r = found.reflectance[entry];
+    Vec3 sum(0.0f), scaled(0.0f), biased(0.0f);
     for (std::uint32_t s = 0; s < n; ++s) {
       const SideOfTexel end = found.ends[entry * n + s];
-      if (end != kNoTexel) sum += cache.radiance(end);
+      if (end == kNoTexel) continue;
+      const Vec3 radiance = cache.radiance(end);
+      sum += radiance;
+      if (!r.glossy()) continue;
+      const ggx::Reflected share = glossOf(found, entry, s);
+      scaled += radiance * share.scale, biased += radiance * share.bias;
     }
-    return sum * (kPi / static_cast<float>(n));
+    const float per_ray = kPi / static_cast<float>(n);
+    indirect = sum * per_ray;
+    out = kInvPi * (r.diffuse * (found.direct[entry] + indirect) + found.glossy[entry] +
+                    per_ray * (r.scale * scaled + r.bias * biased));
   }
 
   void bounce(const Found& found, std::vector<Vec3>& indirect, std::vector<Vec3>& out) const {
-    parallelFor(found.direct.size(), 2048, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        indirect[i] = gathered(found, i);
-        out[i] = found.reflectance[i] * kInvPi * (found.direct[i] + indirect[i]);
-      }
+    parallelFor(found.size(), 2048, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) reflect(found, i, indirect[i], out[i]);
     });
   }
 
+  static std::vector<Vec3> reflectedDirect(const Found& found) {
+    std::vector<Vec3> out(found.size());
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = kInvPi * (found.reflectance[i].diffuse * found.direct[i] + found.glossy[i]);
+    return out;
+  }
+
   void handOn() {
-    std::vector<Vec3> back_indirect(back.direct.size()), next_front(front.direct.size()),
-        next_back(back.direct.size());
-    cache.indirect_.assign(front.direct.size(), Vec3(0.0f));
-    cache.front_.resize(front.direct.size()), cache.back_.resize(back.direct.size());
-    for (std::size_t i = 0; i < front.direct.size(); ++i)
-      cache.front_[i] = front.reflectance[i] * kInvPi * front.direct[i];
-    for (std::size_t i = 0; i < back.direct.size(); ++i)
-      cache.back_[i] = back.reflectance[i] * kInvPi * back.direct[i];
+    std::vector<Vec3> back_indirect(back.size()), next_front(front.size()), next_back(back.size());
+    cache.indirect_.assign(front.size(), Vec3(0.0f));
+    cache.front_ = reflectedDirect(front), cache.back_ = reflectedDirect(back);
     const int most = options.bounces < 0 ? kMostBounces : options.bounces;
     double total = sumOf(cache.front_) + sumOf(cache.back_), change = total;
     for (int k = 0; k < most && total > 0; ++k) {
@@ -232,6 +263,7 @@ struct RadianceCache::Builder {
   Progress& progress;
   const SampleTable directions;
   const LightTable lights;
+  const GlossTable gloss;
   Found front, back;
   std::vector<std::uint8_t> wanted;  // by point: its back is
 };

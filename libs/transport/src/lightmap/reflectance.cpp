@@ -2,16 +2,35 @@
 #include "lightmap/reflectance.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "relume/core/parallel.h"
 
 namespace relume::transport {
 namespace {
 
-// Schlick's F0 + (1 - F0) (1 - cos)^5, cosine-weighted over the hemisphere: 2 integral (1 - c)^5 c dc = 1
-// / 21.
-Vec3 averageFresnel(Vec3 f0) { return f0 + (Vec3(1.0f) - f0) / 21.0f; }
 constexpr float kDielectric = 0.04f;
+
+/// Means over cosine-weighted directions, by index of roughness: of the lobe's share with that Fresnel factor
+/// and of the factor that stands for light that microfacets reflect more than once (bsdf.h).
+struct Means {
+  float scale = 0, bias = 0;
+  Vec3 compensation(Vec3 f0) const { return Vec3(1.0f) + f0 * (1.0f / std::max(scale + bias, 1e-3f) - 1.0f); }
+  Vec3 share(Vec3 f0) const { return compensation(f0) * (f0 * scale + Vec3(bias)); }
+};
+
+std::vector<Means> meansByRoughness() {
+  constexpr int kSteps = 64;
+  std::vector<Means> means(GlossTable::kRoughnesses);
+  for (std::size_t r = 0; r < means.size(); ++r)
+    for (int i = 0; i < kSteps; ++i) {
+      // cos^2 is uniform.
+      const float cosine = std::sqrt((static_cast<float>(i) + 0.5f) / kSteps);
+      const ggx::Reflected e = ggx::reflected(cosine, GlossTable::alphaOf(static_cast<std::uint8_t>(r)));
+      means[r].scale += e.scale / kSteps, means[r].bias += e.bias / kSteps;
+    }
+  return means;
+}
 
 /// Of the surface at a point, which lies in a triangle.
 scene::Hit hitOf(const scene::Scene& scene, const atlas::SurfacePoint& point) {
@@ -28,24 +47,44 @@ scene::Hit hitOf(const scene::Scene& scene, const atlas::SurfacePoint& point) {
 
 }  // namespace
 
-std::vector<Vec3> reflectances(const scene::Scene& scene, const atlas::Texels& texels, Materials materials) {
-  std::vector<Vec3> result(texels.points.size());
+std::uint8_t GlossTable::indexOf(float roughness) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(roughness, 0.0f, 1.0f) * (kRoughnesses - 1)));
+}
+float GlossTable::alphaOf(std::uint8_t index) {
+  const float roughness = static_cast<float>(index) / (kRoughnesses - 1);
+  return std::max(roughness * roughness, 1e-3f);
+}
+GlossTable::GlossTable(const std::vector<float>& cosines) : count_(cosines.size()) {
+  values_.reserve(kRoughnesses * count_);
+  for (std::size_t r = 0; r < kRoughnesses; ++r)
+    for (const float cosine : cosines)
+      values_.push_back(ggx::reflected(cosine, alphaOf(static_cast<std::uint8_t>(r))));
+}
+
+std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Texels& texels,
+                                      Materials materials) {
+  std::vector<Reflectance> result(texels.points.size());
+  const std::vector<Means> means = materials == Materials::kFull ? meansByRoughness() : std::vector<Means>();
   parallelFor(result.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const atlas::SurfacePoint& point = texels.points[i];
       const scene::Material& material =
           scene.materials[scene.meshes[scene.instances[point.instance].mesh].material];
-      const Vec3 albedo = point.albedo.rgb;
+      if (material.unlit) continue;
+      Reflectance& r = result[i];
       // Transmission is no matter here: its share of the rays does not end on the surface.
-      result[i] = material.unlit ? Vec3(0.0f) : albedo;
-      if (material.unlit || materials == Materials::kLambert) continue;
-      // Of the diffuse lobe what the coat lets through; of metal by one look at the texel's middle.
-      const scene::Surface surface = material.metallic > 0 ? scene::surfaceAt(scene, hitOf(scene, point))
-                                                           : scene::Surface{Vec4(1), 0, 1, {}};
-      const float coat = averageFresnel(Vec3(kDielectric)).x * (1.0f - surface.metallic);
-      result[i] = glm::min(result[i] * (1.0f - averageFresnel(Vec3(kDielectric)).x) + Vec3(coat) +
-                               averageFresnel(Vec3(surface.base_colour)) * surface.metallic,
-                           Vec3(1.0f));
+      r.diffuse = point.albedo.rgb;
+      if (materials == Materials::kLambert) continue;
+      const bool look = material.metallic > 0 || material.metallic_roughness_texture;
+      const scene::Surface surface = look ? scene::surfaceAt(scene, hitOf(scene, point))
+                                          : scene::Surface{Vec4(1), 0, material.roughness, {}};
+      r.roughness = GlossTable::indexOf(surface.roughness);
+      const Means& mean = means[r.roughness];
+      const Vec3 coat(kDielectric), metal(surface.base_colour);
+      const float m = surface.metallic;
+      r.diffuse *= Vec3(1.0f) - mean.share(coat);
+      r.scale = (1.0f - m) * mean.compensation(coat) * coat + m * mean.compensation(metal) * metal;
+      r.bias = (1.0f - m) * mean.compensation(coat) + m * mean.compensation(metal);
     }
   });
   return result;

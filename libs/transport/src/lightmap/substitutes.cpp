@@ -6,6 +6,11 @@
 #include <utility>
 
 namespace relume::transport {
+namespace {
+
+constexpr int kRings = 3;  // texels
+
+}  // namespace
 
 std::vector<std::uint32_t> substitutes(const atlas::Texels& texels, std::span<const std::uint8_t> buried) {
   std::vector<std::uint32_t> answer(texels.points.size()), open;
@@ -29,7 +34,7 @@ std::vector<std::uint32_t> substitutes(const atlas::Texels& texels, std::span<co
   };
   constexpr std::pair<int, int> kAround[] = {{-1, 0},  {1, 0},  {0, -1}, {0, 1},
                                              {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
-  for (bool grew = true; grew && !open.empty();) {
+  for (int ring_number = 0; ring_number < kRings && !open.empty(); ++ring_number) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> ring;
     std::vector<std::uint32_t> rest;
     for (const std::uint32_t i : open) {
@@ -48,7 +53,6 @@ std::vector<std::uint32_t> substitutes(const atlas::Texels& texels, std::span<co
       }
     }
     for (const auto& [i, found] : ring) answer[i] = found;
-    grew = !ring.empty();
     open = std::move(rest);
   }
   for (const std::uint32_t i : open) answer[i] = i;
