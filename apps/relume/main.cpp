@@ -12,6 +12,7 @@
 #include "relume/core/check.h"
 #include "relume/core/error.h"
 #include "relume/core/version.h"
+#include "shell.h"
 
 namespace {
 
@@ -31,16 +32,6 @@ int fail(ErrorCode code, const char* text) {
   return relume::exitStatus(code);
 }
 
-std::string join(int argc, char** argv) {
-  std::string line;
-  for (int i = 0; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool plain = word.find_first_of(" '\"$&;|<>*?()") == std::string::npos && !word.empty();
-    line += (i ? " " : "") + (plain ? word : "'" + word + "'");
-  }
-  return line;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -52,7 +43,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   relume::app::Program program;
-  program.command_line = join(argc, argv);
+  program.command_line = relume::app::shellLine(std::vector<std::string>(argv, argv + argc));
   relume::app::addBake(app, program);
   relume::app::addRelight(app, program);
   relume::app::addRender(app, program);
