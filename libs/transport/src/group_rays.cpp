@@ -42,13 +42,19 @@ void GroupRays::prepare(const atlas::SurfacePoint& point, Source& source) const 
   source.dp_dx = point.dp_dx, source.dp_dy = point.dp_dy;
   source.place_count =
       std::min<std::uint32_t>(point.sample_count, static_cast<std::uint32_t>(source.places.size()));
+  Normal normal = point.geometric_normal;
+  Frame frame = source.frame.shading;
+  std::uint32_t triangle = point.triangle;
   for (std::uint32_t i = 0; i < source.place_count; ++i) {
     const atlas::SubSample& sample = texels_.samples[point.first_sample + i];
-    Normal normal = scene::geometricNormal(scene_, point.instance, sample.triangle);
-    if (normal == Normal(0)) normal = point.geometric_normal;  // a sliver
-    const bool folded = glm::dot(normal, point.geometric_normal) < kFoldCosine;
-    source.places[i] = {trace::offsetOrigin(sample.position, normal), normal,
-                        folded ? Frame::about(normal) : source.frame.shading};
+    if (sample.triangle != triangle) {  // places come triangle by triangle
+      triangle = sample.triangle;
+      normal = scene::geometricNormal(scene_, point.instance, triangle);
+      if (normal == Normal(0)) normal = point.geometric_normal;  // a sliver
+      const bool folded = glm::dot(normal, point.geometric_normal) < kFoldCosine;
+      frame = folded ? Frame::about(normal) : source.frame.shading;
+    }
+    source.places[i] = {trace::offsetOrigin(sample.position, normal), normal, frame};
   }
 }
 
@@ -57,11 +63,13 @@ void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most
   lanes_per_sample_ = std::bit_ceil(static_cast<std::uint32_t>(active.size()));
   if (most_samples < kLanes) lanes_per_sample_ = std::max(lanes_per_sample_, kLanes / most_samples);
   uneven_.clear();
-  in_order_ = true;
+  in_order_ = dense_ = true;
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t k = lane % lanes_per_sample_;
     used_[lane] = k < active.size();
     texel_[lane] = used_[lane] ? active[k] : active[0];
+    slot_[lane] = sampleOf(lane) * kGroupTexels + texel_[lane];
+    dense_ &= used_[lane] && slot_[lane] == lane;
     const Source& s = sources_[texel_[lane]];
     const Frame& f = s.frame.shading;
     Lanes& l = lanes_;

@@ -30,6 +30,9 @@ class GroupRays {
   std::uint32_t samplesPerPacket() const { return kLanes / lanes_per_sample_; }
   std::uint32_t texelOf(std::uint32_t lane) const { return texel_[lane]; }  ///< place in the group
   std::uint32_t sampleOf(std::uint32_t lane) const { return lane / lanes_per_sample_; }  ///< of the packet's
+  /// Where a lane belongs in an array of rows of 16 places whose first row is the packet's first sample.
+  std::uint32_t slotOf(std::uint32_t lane) const { return slot_[lane]; }
+  bool everyLaneInItsSlot() const { return dense_; }  ///< slotOf(lane) == lane, all used
   bool used(std::uint32_t lane) const { return used_[lane]; }
 
   /// Samples first .. first + samplesPerPacket() - 1 of the selected texels. t_max < 0: no ray, because the
@@ -74,9 +77,11 @@ class GroupRays {
   std::array<Source, kGroupTexels> sources_;
   Lanes lanes_{};
   std::array<std::uint32_t, kLanes> texel_{};
+  std::array<std::uint32_t, kLanes> slot_{};
   std::array<bool, kLanes> used_{};
   std::uint32_t lanes_per_sample_ = kLanes;
-  bool in_order_ = false;              // lane i takes column i of the same sample
+  bool in_order_ = false;  // lane i takes column i of the same sample
+  bool dense_ = false;
   std::vector<std::uint32_t> uneven_;  // lanes whose texels have places
 };
 
