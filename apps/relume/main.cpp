@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "console_progress.h"
+#include "heap.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
 #include "relume/core/version.h"
@@ -35,6 +36,7 @@ int fail(ErrorCode code, const char* text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  relume::app::prepareHeap();
   CLI::App app{
       "Relume bakes how light travels through a glTF scene, and relights it.\n"
       "Example: relume bake castle.glb -o castle.baked.glb && relume render castle.baked.glb -o castle.png",
