@@ -12,6 +12,7 @@
 #include "prepared.h"
 #include "relume/core/file.h"
 #include "relume/core/memory.h"
+#include "relume/core/parallel.h"
 #include "relume/core/version.h"
 #include "relume/image/io.h"
 #include "report_gather.h"
@@ -26,16 +27,16 @@ constexpr std::uint64_t kStoreLimit = std::uint64_t{2} << 30;  // bytes kept in 
 asset::AtlasTable tableOf(const atlas::Texels& texels) {
   asset::AtlasTable table{.width = texels.width, .height = texels.height, .pages = texels.pages};
   const std::size_t n = texels.points.size();
-  table.texel.reserve(n), table.position.reserve(n), table.normal.reserve(n), table.albedo.reserve(n),
-      table.chart.reserve(n);
+  table.texel.resize(n), table.position.resize(n), table.normal.resize(n), table.albedo.resize(n),
+      table.chart.resize(n);
   table.valid.assign(n, 1);
-  for (const atlas::SurfacePoint& p : texels.points) {
-    table.texel.push_back(p.texel);
-    table.position.push_back(p.position);
-    table.normal.push_back(p.shading_normal);
-    table.albedo.push_back(p.albedo.rgb);
-    table.chart.push_back(p.chart);
-  }
+  parallelFor(n, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const atlas::SurfacePoint& p = texels.points[i];
+      table.texel[i] = p.texel, table.chart[i] = p.chart;
+      table.position[i] = p.position, table.normal[i] = p.shading_normal, table.albedo[i] = p.albedo.rgb;
+    }
+  });
   return table;
 }
 
