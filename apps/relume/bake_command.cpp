@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "command.h"
@@ -18,6 +18,8 @@
 #include "relume/core/memory.h"
 #include "relume/core/parallel.h"
 #include "report.h"
+#include "report_folder.h"
+#include "shell.h"
 
 namespace relume::app {
 namespace {
@@ -64,11 +66,12 @@ bake::BakeOptions toLibrary(const BakeCommandOptions& options) {
   result.seed = options.seed;
   result.isa = options.isa;
   result.cache = cacheFolder(options);
+  result.report = !options.report.empty();
   if (!options.max_memory.empty()) result.max_memory = parseSize(options.max_memory);
   return result;
 }
 
-std::string text(const bake::Parameters& parameters) {
+std::string text(const bake::Parameters& parameters, const char* between) {
   std::string result;
   for (const auto& [key, value] : parameters) {
     const std::string v = std::visit(
@@ -76,12 +79,34 @@ std::string text(const bake::Parameters& parameters) {
           if constexpr (std::is_same_v<std::decay_t<decltype(x)>, bool>)
             return std::string(x ? "true" : "false");
           else
-            return fmt::format("{}", x);
+            return fmt::format("{}", x);  // the shortest text that reads back to the same bits
         },
         value);
-    result += (result.empty() ? "" : ", ") + key + "=" + v;
+    result += (result.empty() ? "" : between) + key + "=" + v;
   }
   return result;
+}
+
+/// A command line that gives the same bits: whatever they depend on is said, with values for what was left to
+/// the program; threads, cache and outputs beside the bake are not.
+std::string repeating(const BakeCommandOptions& options, const fs::path& output, const asset::Asset& asset) {
+  std::vector<std::string> words = {"relume", "bake", fs::absolute(options.input).lexically_normal().string(),
+                                    "-o", fs::absolute(output).lexically_normal().string()};
+  const auto add = [&](const char* option, std::string value) {
+    words.emplace_back(option);
+    words.push_back(std::move(value));
+  };
+  for (const asset::Layer& layer : asset.layers)
+    add("--layer", layer.parameters.empty() ? layer.kind : layer.kind + ":" + text(layer.parameters, ","));
+  add("--quality", options.quality);
+  if (options.samples > 0) add("--samples", std::to_string(options.samples));
+  add("--atlas-size", std::to_string(options.atlas_size));
+  if (options.texel_density > 0) add("--texel-density", fmt::format("{}", options.texel_density));
+  add("--gutter", std::to_string(options.gutter));
+  if (options.new_uv) words.emplace_back("--new-uv");
+  add("--seed", std::to_string(options.seed));
+  if (!options.isa.empty()) add("--isa", options.isa);
+  return shellLine(words);
 }
 
 void printPreflight(const bake::Preflight& p, const BakeCommandOptions& options) {
@@ -96,7 +121,7 @@ void printPreflight(const bake::Preflight& p, const BakeCommandOptions& options)
   fmt::print("quality {}: {} to {} rays per texel until the standard error is below {}{}\n", options.quality,
              q.min_samples, q.max_samples, q.target_error, q.filter ? ", smoothed in texel space" : "");
   for (const bake::Preflight::Layer& layer : p.layers) {
-    fmt::print("layer {} ({})\n  {} of {} texels to compute", layer.name, text(layer.parameters),
+    fmt::print("layer {} ({})\n  {} of {} texels to compute", layer.name, text(layer.parameters, ", "),
                p.texels - layer.reusable_texels, p.texels);
     if (layer.reusable_texels < p.texels)
       fmt::print(": {}; about {:.1f} s", layer.stale_because, layer.forecast_seconds);
@@ -120,7 +145,7 @@ void printSummary(const bake::BakeResult& result, const fs::path& output, double
   fmt::print(", {} at peak\n", formatSize(s.peak_rss_bytes));
 }
 
-void bakeScene(const BakeCommandOptions& options, Progress& progress) {
+void bakeScene(const BakeCommandOptions& options, const std::string& typed, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const bake::BakeOptions library = toLibrary(options);
   const fs::path output =
@@ -135,12 +160,20 @@ void bakeScene(const BakeCommandOptions& options, Progress& progress) {
   }
   requireWritable(output);
   if (!options.stats.empty()) requireWritable(options.stats);
-  if (!options.report.empty()) makeFolder(options.report);
+  std::optional<ReportFolder> report;
+  if (!options.report.empty()) report.emplace(options.report);
   const bake::BakeResult result = bake::bake(document, library, progress);
   print(result.warnings);
   writeFileAtomically(output, result.glb);
   if (!options.stats.empty()) writeFileAtomically(options.stats, bake::toJson(result.statistics));
-  if (!options.report.empty()) writeReport(options.report, output, result, progress);
+  if (report) {
+    const ReportFacts facts{.input = options.input,
+                            .output = output.string(),
+                            .typed = typed,
+                            .command = repeating(options, output, result.asset)};
+    writeReport(report->draft(), facts, result, progress);
+    report->publish();
+  }
   printSummary(result, output,
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (!options.report.empty())
@@ -207,13 +240,16 @@ void addBake(CLI::App& app, Program& program) {
   command->add_flag("--dry-run", options->dry_run,
                     "say what would be baked and what it would cost; bake nothing");
   command->add_option("--stats", options->stats, "write statistics as JSON");
-  command->add_option("--report", options->report, "folder for a report with pictures");
+  command->add_option("--report", options->report,
+                      "folder for a report: report.html with pictures, report.json");
   command->add_option("--progress", options->progress, "auto: a line on a terminal; json: lines on stderr")
       ->check(CLI::IsMember({"auto", "json", "none"}))
       ->capture_default_str();
   command->callback([&program, options] {
     program.progress_mode = options->progress;
-    program.run = [options](Progress& progress) { bakeScene(*options, progress); };
+    program.run = [options, typed = program.command_line](Progress& progress) {
+      bakeScene(*options, typed, progress);
+    };
   });
 }
 

@@ -9,9 +9,11 @@
 
 #include "command.h"
 #include "console_progress.h"
+#include "heap.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
 #include "relume/core/version.h"
+#include "shell.h"
 
 namespace {
 
@@ -31,19 +33,10 @@ int fail(ErrorCode code, const char* text) {
   return relume::exitStatus(code);
 }
 
-std::string join(int argc, char** argv) {
-  std::string line;
-  for (int i = 0; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool plain = word.find_first_of(" '\"$&;|<>*?()") == std::string::npos && !word.empty();
-    line += (i ? " " : "") + (plain ? word : "'" + word + "'");
-  }
-  return line;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
+  relume::app::prepareHeap();
   CLI::App app{
       "Relume bakes how light travels through a glTF scene, and relights it.\n"
       "Example: relume bake castle.glb -o castle.baked.glb && relume render castle.baked.glb -o castle.png",
@@ -52,7 +45,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   relume::app::Program program;
-  program.command_line = join(argc, argv);
+  program.command_line = relume::app::shellLine(std::vector<std::string>(argv, argv + argc));
   relume::app::addBake(app, program);
   relume::app::addRelight(app, program);
   relume::app::addRender(app, program);

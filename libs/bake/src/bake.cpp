@@ -10,10 +10,11 @@
 
 #include "pages.h"
 #include "prepared.h"
+#include "relume/bake/viewer_textures.h"
 #include "relume/core/file.h"
 #include "relume/core/memory.h"
+#include "relume/core/parallel.h"
 #include "relume/core/version.h"
-#include "relume/image/io.h"
 #include "report_gather.h"
 #include "scene_digest.h"
 #include "texel_store.h"
@@ -26,16 +27,16 @@ constexpr std::uint64_t kStoreLimit = std::uint64_t{2} << 30;  // bytes kept in 
 asset::AtlasTable tableOf(const atlas::Texels& texels) {
   asset::AtlasTable table{.width = texels.width, .height = texels.height, .pages = texels.pages};
   const std::size_t n = texels.points.size();
-  table.texel.reserve(n), table.position.reserve(n), table.normal.reserve(n), table.albedo.reserve(n),
-      table.chart.reserve(n);
+  table.texel.resize(n), table.position.resize(n), table.normal.resize(n), table.albedo.resize(n),
+      table.chart.resize(n);
   table.valid.assign(n, 1);
-  for (const atlas::SurfacePoint& p : texels.points) {
-    table.texel.push_back(p.texel);
-    table.position.push_back(p.position);
-    table.normal.push_back(p.shading_normal);
-    table.albedo.push_back(p.albedo.rgb);
-    table.chart.push_back(p.chart);
-  }
+  parallelFor(n, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const atlas::SurfacePoint& p = texels.points[i];
+      table.texel[i] = p.texel, table.chart[i] = p.chart;
+      table.position[i] = p.position, table.normal[i] = p.shading_normal, table.albedo[i] = p.albedo.rgb;
+    }
+  });
   return table;
 }
 
@@ -68,27 +69,6 @@ double relativeError(const PointLayer& layer) {
   return value2 > 0 ? std::sqrt(error2 / value2) : 0;
 }
 
-// The grey PNG of each page that ordinary viewers multiply ambient light with.
-std::vector<std::vector<std::byte>> occlusionPages(const asset::Asset& asset) {
-  const asset::Layer* layer = asset.find("ao");
-  if (!layer) layer = asset.find("obscurance");
-  std::vector<std::vector<std::byte>> pages;
-  if (!layer) return pages;
-  const asset::Plane& plane = layer->planes.front();
-  const auto channels = static_cast<std::size_t>(plane.channels);
-  const std::size_t page_texels =
-      static_cast<std::size_t>(asset.atlas.width) * static_cast<std::size_t>(asset.atlas.height);
-  for (std::uint32_t page = 0; page < asset.atlas.pages; ++page) {
-    image::Image grey(asset.atlas.width, asset.atlas.height, 1);
-    for (std::size_t i = 0; i < page_texels; ++i) {
-      const float* v = plane.values.data() + (page * page_texels + i) * channels;
-      grey.data[i] = channels == 3 ? luminance({v[0], v[1], v[2]}) : v[0];
-    }
-    pages.push_back(image::encodePngData(grey));
-  }
-  return pages;
-}
-
 scene::gltf::BakeOutput outputOf(atlas::Atlas& atlas, const asset::Asset& asset) {
   scene::gltf::BakeOutput output;
   const Vec2 size(static_cast<float>(atlas.width), static_cast<float>(atlas.height));
@@ -101,7 +81,7 @@ scene::gltf::BakeOutput outputOf(atlas::Atlas& atlas, const asset::Asset& asset)
     for (Vec2& t : use.uv) t = glm::clamp(t / size, Vec2(0), Vec2(1));
     output.uses.push_back(std::move(use));
   }
-  output.occlusion_png = occlusionPages(asset);
+  addViewerTextures(asset, output);
   asset::Encoded encoded = asset::encode(asset);
   output.transfer = nlohmann::json::parse(encoded.json);
   output.views = std::move(encoded.views);

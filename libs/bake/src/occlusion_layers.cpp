@@ -62,7 +62,7 @@ Albedo roundedMeanAlbedo(const atlas::Texels& texels) {
 
 Digest keyOf(const OcclusionOptions& o, const RowLayout& layout) {
   return Hasher()
-      .add("occlusion 3")  // raise when the solver's results change
+      .add("occlusion 4")  // raise when the solver's results change
       .add(o.kind)
       .add(o.weight.shape)
       .add(o.weight.tau)
@@ -138,6 +138,7 @@ LayerJob makeJob(const LayerContext& context, const Parameters& parameters, Occl
   LayerJob job;
   job.solver.row = layout.size();
   job.solver.reach = weight.limit;
+  job.solver.most_rays = options.max_samples;
   job.solver.key = keyOf(options, layout);
   const auto solver = std::make_shared<transport::OcclusionSolver>(tracer, texels, options);
   job.solver.solve = [=](std::span<const std::uint32_t> which, std::span<float> rows, Progress& progress) {

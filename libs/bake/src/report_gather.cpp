@@ -42,10 +42,10 @@ std::string nameOf(const scene::Scene& scene, const scene::Instance& instance) {
   return bracket == std::string::npos ? instance.name : instance.name + mesh.substr(bracket);
 }
 
-// Quarters of octaves, three octaves to each side of the middle.
+// Quarters of octaves, three octaves to each side; the middle is in the middle of a bin.
 std::vector<double> densityEdges(double middle) {
   std::vector<double> edges;
-  for (int i = -12; i <= 12; ++i) edges.push_back(middle * std::exp2(i / 4.0));
+  for (int i = -12; i <= 13; ++i) edges.push_back(middle * std::exp2((i - 0.5) / 4));
   return edges;
 }
 
@@ -124,6 +124,7 @@ LayerReport& ReportGatherer::add(const PreparedLayer& prepared, const PointLayer
   const double most = errors.empty() ? 0 : *std::max_element(errors.begin(), errors.end());
   out.chart_errors = histogramOf(errors, evenEdges(most > 0 ? most : 1, 24));
   findSuspects(prepared_.texels, point_of_texel_, layer, out);
+  out.errors = layer.error;
   return out;
 }
 

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kMagic[8] = {'R', 'E', 'L', 'T', 'E', 'X', 'L', '1'};
-constexpr std::size_t kBlock = 1 << 14;  // texels between chances to save, at least
+// Texels between chances to save: about a second's rays; few enough that their copies take little memory.
+constexpr std::size_t kLeastBlock = 1 << 14, kMostBlock = 1 << 18, kBlockRays = 1 << 25;
 constexpr std::uint32_t kBand = 16;  // rows of a page that stay together: solvers work on neighbours at once
 constexpr auto kSaveEvery = std::chrono::seconds(30);
 
@@ -160,14 +161,15 @@ std::vector<std::uint32_t> TexelStore::pending() const {
   return result;
 }
 
-std::size_t TexelStore::endOfBlock(std::span<const std::uint32_t> todo, std::size_t first) const {
+std::size_t TexelStore::endOfBlock(std::span<const std::uint32_t> todo, std::size_t first,
+                                   std::size_t block) const {
   const auto width = static_cast<std::uint32_t>(texels_.width),
              height = static_cast<std::uint32_t>(texels_.height);
   const auto band = [&](std::uint32_t point) {
     const std::uint32_t row = texels_.points[point].texel / width;
     return std::pair(row / height, row % height / kBand);
   };
-  std::size_t end = std::min(todo.size(), first + kBlock);
+  std::size_t end = std::min(todo.size(), first + block);
   while (end < todo.size() && band(todo[end]) == band(todo[end - 1])) ++end;
   return end;
 }
@@ -176,11 +178,13 @@ std::uint64_t TexelStore::complete(const TexelSolver& solver, Progress& progress
   const std::vector<std::uint32_t> todo = pending();
   if (todo.empty()) return 0;
   std::uint64_t rays = 0;
+  const std::size_t block_texels =
+      std::clamp(kBlockRays / std::max<std::size_t>(solver.most_rays, 1), kLeastBlock, kMostBlock);
   std::vector<float> block;
   auto saved = std::chrono::steady_clock::now();
   try {
     for (std::size_t first = 0; first < todo.size();) {
-      const auto which = std::span(todo).subspan(first, endOfBlock(todo, first) - first);
+      const auto which = std::span(todo).subspan(first, endOfBlock(todo, first, block_texels) - first);
       first += which.size();
       block.resize(which.size() * row_);
       rays += solver.solve(which, block, progress);

@@ -34,7 +34,7 @@ class TexelStore {
  private:
   bool load(float reach);
   void save() const;
-  std::size_t endOfBlock(std::span<const std::uint32_t> todo, std::size_t first) const;
+  std::size_t endOfBlock(std::span<const std::uint32_t> todo, std::size_t first, std::size_t block) const;
 
   const atlas::Texels& texels_;
   std::filesystem::path file_;

@@ -155,10 +155,15 @@ void declareExtensions(Json& doc) {
   for (const std::string_view name :
        {std::string_view(kDracoExtension), std::string_view(kInstancingExtension),
         std::string_view(kMeshoptExtensions[0]), std::string_view(kMeshoptExtensions[1]),
-        std::string_view(kTransferExtension)}) {
+        std::string_view(kLightmapExtension), std::string_view(kTransferExtension)}) {
     if (usesExtension(doc, name)) continue;
     remove("extensionsUsed", name);
     remove("extensionsRequired", name);
+  }
+  if (usesExtension(doc, kLightmapExtension)) {
+    Json& names = arrayOf(doc, "extensionsUsed");
+    if (std::find(names.begin(), names.end(), kLightmapExtension) == names.end())
+      names.push_back(kLightmapExtension);
   }
   if (usesExtension(doc, kTransferExtension)) {
     remove("extensionsUsed", kTransferExtension);

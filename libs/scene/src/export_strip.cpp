@@ -36,6 +36,16 @@ void restoreOcclusion(Json& material) {
   eraseNote(material, "occlusionTexture");
 }
 
+void restoreLightmap(Json& material) {
+  Json* original = findNote(material, kLightmapExtension);
+  if (!original) return;
+  if (original->is_null())
+    eraseExtension(material, kLightmapExtension);
+  else
+    material["extensions"][kLightmapExtension] = *original;
+  eraseNote(material, kLightmapExtension);
+}
+
 void stripMaterials(Json& doc) {
   Json* found = fieldOf(doc, "materials");
   if (!found || !found->is_array()) return;
@@ -47,6 +57,7 @@ void stripMaterials(Json& doc) {
   for (std::size_t m = 0; m < count; ++m) {
     Json& material = materials[m];
     restoreOcclusion(material);
+    restoreLightmap(material);
     if (const Json* copied = findNote(material, "copyOf")) original[m] = asIndex(*copied, count);
     stands_for_none[m] = findNote(material, "standsForNone") != nullptr;
     eraseNote(material, "copyOf");

@@ -10,6 +10,8 @@ namespace relume::scene::gltf {
 inline constexpr const char* kNotes = "relume";
 
 inline constexpr const char* kTransferExtension = "RELUME_transfer";
+inline constexpr const char* kLightmapExtension = "MOZ_lightmap";
+inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";
 inline constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 inline constexpr const char* kInstancingExtension = "EXT_mesh_gpu_instancing";
 /// The two names of one compression.

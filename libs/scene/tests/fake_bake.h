@@ -12,6 +12,7 @@ struct FakeBake {
   bool split = true;        ///< every triangle gets vertices of its own; else the vertices of the mesh
   std::uint32_t pages = 1;  ///< instance i lies on page i % pages
   bool occlusion = true;
+  bool lightmap = false;
   bool transfer = true;
 };
 
@@ -46,6 +47,10 @@ inline BakeOutput fakeBake(const Scene& scene, const FakeBake& options = {}) {
   if (options.occlusion)
     for (std::uint32_t p = 0; p < options.pages; ++p)
       bake.occlusion_png.push_back(image::encodePngData(image::Image(4, 4, 1, static_cast<float>(p) / 8)));
+  if (options.lightmap)
+    for (std::uint32_t p = 0; p < options.pages; ++p)
+      bake.lightmap.push_back({image::encodePngData(image::Image(4, 4, 3, 1 - static_cast<float>(p) / 8)),
+                               2.5f + static_cast<float>(p)});
   if (options.transfer) {
     bake.transfer = {
         {"layers", {{{"name", "ao"}, {"bufferView", 1}}, {{"name", "test"}, {"bufferView", 0}}}}};

@@ -21,31 +21,29 @@ namespace {
 // error of all texels from 3.4 to 3.7 %.
 constexpr float kFoldCosine = 0.97f;
 
-/// Turns frames about their normals by an angle that is the block's own. All blocks have the same directions
-/// to send rays along; what these miss together on walls that are alike would otherwise not average out: the
-/// radiance inside a Menger sponge was 3 % too low.
-class Turn {
- public:
-  explicit Turn(std::uint32_t bits) : cosine_(std::cos(angleOf(bits))), sine_(std::sin(angleOf(bits))) {}
-  Frame operator()(const Frame& f) const {
-    return {cosine_ * f.t + sine_ * f.b, cosine_ * f.b - sine_ * f.t, f.n};
-  }
-
- private:
-  static float angleOf(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (2.0f * kPi * 0x1p-24f); }
-  float cosine_, sine_;
-};
+// Texels, both ways, that share a turn.
+constexpr std::uint32_t kTurnSide = 64;
 
 }  // namespace
 
 GroupRays::GroupRays(const scene::Scene& scene, const atlas::Texels& texels, const SampleTable& samples,
-                     std::uint64_t seed, float limit)
-    : scene_(scene), texels_(texels), samples_(samples), seed_(seed), limit_(limit) {}
+                     std::uint64_t seed, float limit, Alignment alignment)
+    : scene_(scene), texels_(texels), samples_(samples), seed_(seed), limit_(limit), alignment_(alignment) {}
 
 void GroupRays::begin(std::span<const std::uint32_t> group, Side side) {
   RELUME_CHECK_LE(group.size(), sources_.size());
   const float sign = side == Side::kFront ? 1.0f : -1.0f;
+  if (alignment_ == Alignment::kTurned && !group.empty()) turn(texels_.points[group[0]]);
   for (std::size_t i = 0; i < group.size(); ++i) prepare(texels_.points[group[i]], sign, sources_[i]);
+}
+
+void GroupRays::turn(const atlas::SurfacePoint& point) {
+  const auto width = static_cast<std::uint32_t>(texels_.width);
+  const std::uint32_t x = point.texel % width, y = point.texel / width;
+  const std::uint32_t patch =
+      hashCombine(streamOf(seed_, point.chart, 3), y / kTurnSide * width + x / kTurnSide);
+  turn_ = Turn(patch);
+  shift_ = {static_cast<float>(patch >> 16) * 0x1p-16f, static_cast<float>(patch & 0xffffu) * 0x1p-16f};
 }
 
 void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& source) const {
@@ -54,25 +52,26 @@ void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& so
   const std::uint32_t x = point.texel % width, y = point.texel / width % height;
   source.column = y % kGroupSide * kGroupSide + x % kGroupSide;
   source.alpha_stream = streamOf(seed_, point.texel, 2);
-  const std::uint32_t page = point.texel / (width * height);
-  const std::uint32_t block =
-      hashCombine(streamOf(seed_, page, 3), (y / kGroupSide) * width + x / kGroupSide);
-  const Turn turn(block);
-  source.shift = {static_cast<float>(block >> 16) * 0x1p-16f, static_cast<float>(block & 0xffffu) * 0x1p-16f};
   const Normal own = side * point.geometric_normal;
   source.frame = RayFrame(side * point.shading_normal, own);
-  source.frame.shading = turn(source.frame.shading);
+  source.frame.shading = turn_(source.frame.shading);
   source.centre = trace::offsetOrigin(point.position, own);
   source.dp_dx = point.dp_dx, source.dp_dy = point.dp_dy;
   source.place_count =
       std::min<std::uint32_t>(point.sample_count, static_cast<std::uint32_t>(source.places.size()));
+  Normal normal = own;
+  Frame frame = source.frame.shading;
+  std::uint32_t triangle = point.triangle;
   for (std::uint32_t i = 0; i < source.place_count; ++i) {
     const atlas::SubSample& sample = texels_.samples[point.first_sample + i];
-    Normal normal = side * scene::geometricNormal(scene_, point.instance, sample.triangle);
-    if (normal == Normal(0)) normal = own;  // a sliver
-    const bool folded = glm::dot(normal, own) < kFoldCosine;
-    source.places[i] = {trace::offsetOrigin(sample.position, normal), normal,
-                        folded ? turn(Frame::about(normal)) : source.frame.shading};
+    if (sample.triangle != triangle) {  // places come triangle by triangle
+      triangle = sample.triangle;
+      normal = side * scene::geometricNormal(scene_, point.instance, triangle);
+      if (normal == Normal(0)) normal = own;  // a sliver
+      const bool folded = glm::dot(normal, own) < kFoldCosine;
+      frame = folded ? turn_(Frame::about(normal)) : source.frame.shading;
+    }
+    source.places[i] = {trace::offsetOrigin(sample.position, normal), normal, frame};
   }
 }
 
@@ -97,11 +96,13 @@ void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most
   lanes_per_sample_ = std::bit_ceil(static_cast<std::uint32_t>(active.size()));
   if (most_samples < kLanes) lanes_per_sample_ = std::max(lanes_per_sample_, kLanes / most_samples);
   uneven_.clear();
-  in_order_ = true;
+  in_order_ = dense_ = true;
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t k = lane % lanes_per_sample_;
     used_[lane] = k < active.size();
     texel_[lane] = used_[lane] ? active[k] : active[0];
+    slot_[lane] = sampleOf(lane) * kGroupTexels + texel_[lane];
+    dense_ &= used_[lane] && slot_[lane] == lane;
     const Source& s = sources_[texel_[lane]];
     const Frame& f = s.frame.shading;
     Lanes& l = lanes_;

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,12 +19,31 @@ namespace relume::transport {
 /// Of a surface: where its normals point to, or the other.
 enum class Side : std::uint8_t { kFront, kBack };
 
+/// Turns frames about their normals.
+class Turn {
+ public:
+  Turn() = default;
+  explicit Turn(std::uint32_t bits) : cosine_(std::cos(angleOf(bits))), sine_(std::sin(angleOf(bits))) {}
+  Frame operator()(const Frame& f) const {
+    return {cosine_ * f.t + sine_ * f.b, cosine_ * f.b - sine_ * f.t, f.n};
+  }
+
+ private:
+  static float angleOf(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (2.0f * kPi * 0x1p-24f); }
+  float cosine_ = 1.0f, sine_ = 0.0f;
+};
+
+/// Whether blocks of all charts send rays along the same directions of their frames, or each chart (and patch
+/// of a large one) turns them: what the same directions miss on walls that are alike does not average out,
+/// but where walls stand square to each other, as in most buildings, they have 10 % less noise.
+enum class Alignment : std::uint8_t { kSame, kTurned };
+
 class GroupRays {
  public:
   static constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
 
   GroupRays(const scene::Scene& scene, const atlas::Texels& texels, const SampleTable& samples,
-            std::uint64_t seed, float limit);
+            std::uint64_t seed, float limit, Alignment alignment = Alignment::kSame);
 
   /// group: indices into Texels::points, at most kGroupTexels.
   void begin(std::span<const std::uint32_t> group, Side side = Side::kFront);
@@ -34,6 +54,9 @@ class GroupRays {
   std::uint32_t samplesPerPacket() const { return kLanes / lanes_per_sample_; }
   std::uint32_t texelOf(std::uint32_t lane) const { return texel_[lane]; }  ///< place in the group
   std::uint32_t sampleOf(std::uint32_t lane) const { return lane / lanes_per_sample_; }  ///< of the packet's
+  /// Where a lane belongs in an array of rows of 16 places whose first row is the packet's first sample.
+  std::uint32_t slotOf(std::uint32_t lane) const { return slot_[lane]; }
+  bool everyLaneInItsSlot() const { return dense_; }  ///< slotOf(lane) == lane, all used
   bool used(std::uint32_t lane) const { return used_[lane]; }
 
   /// Samples first .. first + samplesPerPacket() - 1 of the selected texels. t_max < 0: no ray, because the
@@ -53,8 +76,8 @@ class GroupRays {
   };
   Spot spot(std::uint32_t texel, Vec2 u) const;
 
-  /// The block's own, in [0, 1)^2: to set its samples apart from those of other blocks.
-  Vec2 shift(std::uint32_t texel) const { return sources_[texel].shift; }
+  /// In [0, 1)^2: sets samples apart from those of other charts and patches.
+  Vec2 shift() const { return shift_; }
 
   /// Seed of a texel's decisions about alpha.
   std::uint32_t alphaStream(std::uint32_t texel) const { return sources_[texel].alpha_stream; }
@@ -72,7 +95,6 @@ class GroupRays {
     RayFrame frame{Normal(0, 0, 1), Normal(0, 0, 1)};
     Point centre;
     Vec3 dp_dx, dp_dy;
-    Vec2 shift{0.0f};
     std::uint32_t column = 0, alpha_stream = 0;
     std::uint32_t place_count = 0;  // 0: a parallelogram about centre
     std::array<Place, 16> places;
@@ -92,6 +114,7 @@ class GroupRays {
     std::uint32_t alpha[kLanes];
   };
 
+  void turn(const atlas::SurfacePoint& point);
   void prepare(const atlas::SurfacePoint& point, float side, Source& source) const;
 
   const scene::Scene& scene_;
@@ -99,12 +122,17 @@ class GroupRays {
   const SampleTable& samples_;
   const std::uint64_t seed_;
   const float limit_;
+  const Alignment alignment_;
+  Turn turn_;
+  Vec2 shift_{0.0f};
   std::array<Source, kGroupTexels> sources_;
   Lanes lanes_{};
   std::array<std::uint32_t, kLanes> texel_{};
+  std::array<std::uint32_t, kLanes> slot_{};
   std::array<bool, kLanes> used_{};
   std::uint32_t lanes_per_sample_ = kLanes;
-  bool in_order_ = false;              // lane i takes column i of the same sample
+  bool in_order_ = false;  // lane i takes column i of the same sample
+  bool dense_ = false;
   std::vector<std::uint32_t> uneven_;  // lanes whose texels have places
 };
 

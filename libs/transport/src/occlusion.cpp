@@ -36,7 +36,7 @@ static_assert(kGroupTexels == kColumns);
 // Of a texel, to learn how much of it lies inside something: first few rays; where any of the group's meets a
 // back face, more.
 constexpr std::uint32_t kSuspectRays = 4, kBuriedRays = 32;
-constexpr float kSuspectShare = 0.25f;  // of blocked rays, below which it is not asked
+constexpr float kSuspectShare = 0.25f;  // of blocked rays, below which it is not asked more
 
 /// The j-th of `count` samples out of `known`, both powers of two: spread evenly over the hemisphere, and
 /// with different low bits, so that they are spread over the footprint too (sample_table.cpp).
@@ -137,7 +137,12 @@ class GroupSolver {
   void solveChunk(std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t s = 0; s < count; s += rays_.samplesPerPacket()) {
       rays_.packet(first + s, packet_);
-      any_hit_ ? traceAnyHit(first + s) : traceFirstHit(first + s, s);
+      if (!any_hit_)
+        traceFirstHit(first + s, s);
+      else if (first == 0 && tellsBackFaces(s, count))
+        traceNearestHit(s);
+      else
+        traceAnyHit(first + s);
     }
     const float* values = &values_[std::size_t{first} * kColumns];
     std::array<float, kColumns> sum{}, mean{};
@@ -176,7 +181,7 @@ class GroupSolver {
   template <class Visit>
   void forEachLane(Visit visit) const {
     for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-      if (rays_.used(lane)) visit(lane, rays_.sampleOf(lane) * kColumns + rays_.texelOf(lane));
+      if (rays_.used(lane)) visit(lane, rays_.slotOf(lane));
   }
 
   void keepDirections(std::uint32_t in_chunk) {
@@ -187,12 +192,37 @@ class GroupSolver {
     });
   }
 
-  void traceAnyHit(std::uint32_t sample) {
-    const std::uint32_t hit = tracer_.occludedPacket(packet_);
-    float* values = &values_[std::size_t{sample} * kColumns];
-    forEachLane([&](std::uint32_t lane, std::uint32_t at) {
-      values[at] = packet_.t_max[lane] < 0.0f ? -1.0f : ((hit >> lane) & 1u) != 0 ? 0.0f : 1.0f;
+  void traceAnyHit(std::uint32_t sample) { keepHits(sample, tracer_.occludedPacket(packet_)); }
+
+  /// As traceAnyHit, and counts the back faces. Little dearer, because most rays meet nothing.
+  void traceNearestHit(std::uint32_t sample) {
+    trace::HitPacket hits;
+    tracer_.intersectPacket(packet_, hits);
+    keepHits(sample, hits.hit);
+    if (hits.back_face == 0) return;
+    forEachLane([&](std::uint32_t lane, std::uint32_t) {
+      tallies_[rays_.texelOf(lane)].back += (hits.back_face >> lane) & 1u;
     });
+  }
+
+  /// Of the packets of the first `known` samples a few, spread over them, look for the nearest hit.
+  bool tellsBackFaces(std::uint32_t sample, std::uint32_t known) const {
+    const std::uint32_t packets = std::max(known / rays_.samplesPerPacket(), 1u);
+    const std::uint32_t wanted = std::clamp(kSuspectRays / rays_.samplesPerPacket(), 1u, packets);
+    for (std::uint32_t j = 0; j < wanted; ++j)
+      if (spreadSample(j, wanted, packets) * rays_.samplesPerPacket() == sample) return true;
+    return false;
+  }
+
+  void keepHits(std::uint32_t sample, std::uint32_t hit) {
+    std::array<float, kLanes> found;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+      found[lane] = packet_.t_max[lane] < 0.0f ? -1.0f : (hit & (1u << lane)) != 0 ? 0.0f : 1.0f;
+    float* values = &values_[std::size_t{sample} * kColumns];
+    if (rays_.everyLaneInItsSlot())
+      std::copy(found.begin(), found.end(), values);
+    else
+      forEachLane([&](std::uint32_t lane, std::uint32_t at) { values[at] = found[lane]; });
     keepDirections(sample % kMaxBatch);
   }
 
@@ -232,36 +262,35 @@ class GroupSolver {
     return netStandardError(std::span(column_).first(n), std::span(codes_).first(n), scratch_);
   }
 
-  /// Back faces after any-hit rays, which do not tell them. Of texels of which enough rays are blocked (at
-  /// most so many can have met a back face), a few blocked ones are traced again, now to their first hits.
+  /// Any-hit rays do not tell back faces. Where one of the few that do met any, blocked rays of the texels of
+  /// which enough are blocked (at most so many can have met a back face) are traced again, now to their first
+  /// hits.
   void findBuried(std::uint32_t group) {
-    const std::uint32_t known = firstChunk();
+    const auto met = [](const Tally& tally) { return tally.back > 0; };
+    if (std::none_of(tallies_.begin(), tallies_.begin() + group, met)) return;
     std::vector<std::uint32_t>& suspects = active_;
     suspects.clear();
-    for (std::uint32_t i = 0; i < group; ++i)
+    for (std::uint32_t i = 0; i < group; ++i) {
+      tallies_[i].back = 0;
       if (tallies_[i].mean() < 1.0f - kSuspectShare) suspects.push_back(i);
+    }
     if (suspects.empty()) return;
-    for (const std::uint32_t wanted : {kSuspectRays, kBuriedRays}) {
-      const std::uint32_t count = std::min(wanted, known);
-      rays_.select(suspects, 1);
-      for (const std::uint32_t i : suspects) tallies_[i].back = tallies_[i].back_rays = 0;
-      for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t s = spreadSample(j, count, known);
-        rays_.packet(s, packet_);
-        trace::HitPacket hits;
-        forEachLane([&](std::uint32_t lane, std::uint32_t) {
-          const float value = values_[std::size_t{s} * kColumns + rays_.texelOf(lane)];
-          tallies_[rays_.texelOf(lane)].back_rays += value >= 0.0f;
-          if (value != 0.0f) packet_.t_max[lane] = -1.0f;
-          traced_ += value == 0.0f;
-        });
-        tracer_.intersectPacket(packet_, hits);
-        forEachLane([&](std::uint32_t lane, std::uint32_t) {
-          tallies_[rays_.texelOf(lane)].back += (hits.back_face >> lane) & 1u;
-        });
-      }
-      const auto met = [&](std::uint32_t i) { return tallies_[i].back > 0; };
-      if (std::none_of(suspects.begin(), suspects.end(), met)) return;
+    const std::uint32_t known = firstChunk(), count = std::min(kBuriedRays, known);
+    rays_.select(suspects, 1);
+    for (std::uint32_t j = 0; j < count; ++j) {
+      const std::uint32_t s = spreadSample(j, count, known);
+      rays_.packet(s, packet_);
+      trace::HitPacket hits;
+      forEachLane([&](std::uint32_t lane, std::uint32_t) {
+        const float value = values_[std::size_t{s} * kColumns + rays_.texelOf(lane)];
+        tallies_[rays_.texelOf(lane)].back_rays += value >= 0.0f;
+        if (value != 0.0f) packet_.t_max[lane] = -1.0f;
+        traced_ += value == 0.0f;
+      });
+      tracer_.intersectPacket(packet_, hits);
+      forEachLane([&](std::uint32_t lane, std::uint32_t) {
+        tallies_[rays_.texelOf(lane)].back += (hits.back_face >> lane) & 1u;
+      });
     }
   }
 
@@ -282,6 +311,32 @@ class GroupSolver {
   std::array<Tally, kColumns> tallies_;
   std::array<float, kColumns> variance_{};
   std::uint64_t traced_ = 0;
+};
+
+/// Where the result of a point goes: its place in a selection.
+class Slots {
+ public:
+  Slots(std::span<const std::uint32_t> which, std::size_t points)
+      : count_(which.empty() ? points : which.size()) {
+    for (const std::uint32_t i : which) RELUME_CHECK_LT(i, points);
+    if (which.empty()) return;
+    first_ = which[0];
+    // Nearly always a run of points, which needs no table.
+    const auto apart = [](std::uint32_t a, std::uint32_t b) { return b != a + 1; };
+    if (std::adjacent_find(which.begin(), which.end(), apart) == which.end()) return;
+    table_.assign(points, scene::kNone);
+    for (std::size_t i = 0; i < which.size(); ++i) table_[which[i]] = static_cast<std::uint32_t>(i);
+  }
+
+  std::uint32_t operator()(std::uint32_t point) const {
+    if (!table_.empty()) return table_[point];
+    return point >= first_ && point - first_ < count_ ? point - first_ : scene::kNone;
+  }
+
+ private:
+  std::size_t count_;
+  std::uint32_t first_ = 0;
+  std::vector<std::uint32_t> table_;
 };
 
 void checkOptions(const OcclusionOptions& options) {
@@ -341,23 +396,18 @@ OcclusionResult OcclusionSolver::solve(Progress& progress, std::span<const std::
   result.error.resize(count);
   result.back_share.resize(count);
   if (impl_->options.bent_normal) result.bent.resize(count);
-  std::vector<std::uint32_t> slot_of;  // by point; only for a selection
-  if (!which.empty()) slot_of.assign(points, scene::kNone);
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    RELUME_CHECK_LT(which[i], points);
-    slot_of[which[i]] = static_cast<std::uint32_t>(i);
-  }
-  const std::vector<std::size_t> tiles = groups.tilesOf(which);
+  const Slots slots_of(which, points);
+  const std::vector<std::size_t> tiles =
+      groups.tilesOf(count == points ? std::span<const std::uint32_t>() : which);
 
   std::vector<std::uint64_t> rays(tiles.size(), 0);
-  parallelFor(tiles.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallelFor(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     auto solver = impl_->take();
     for (std::size_t tile = begin; tile < end; ++tile) {
       const std::uint64_t before = solver->rays();
       groups.forEachGroup(tiles[tile], [&](std::span<const std::uint32_t> group) {
         std::array<std::uint32_t, kGroupTexels> slots;
-        std::transform(group.begin(), group.end(), slots.begin(),
-                       [&](std::uint32_t i) { return slot_of.empty() ? i : slot_of[i]; });
+        std::transform(group.begin(), group.end(), slots.begin(), slots_of);
         const auto used = std::span(slots).first(group.size());
         const auto skipped = std::count(used.begin(), used.end(), scene::kNone);
         if (skipped == std::ssize(used) || progress.cancelled()) return;

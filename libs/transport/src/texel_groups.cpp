@@ -6,14 +6,11 @@
 
 namespace relume::transport {
 
-TexelGroups::TexelGroups(const atlas::Texels& texels) : texels_(texels) {
+TexelGroups::TexelGroups(const atlas::Texels& texels) : texels_(texels), rows_(texels) {
   const auto width = static_cast<std::uint32_t>(texels.width),
              height = static_cast<std::uint32_t>(texels.height);
   tiles_x_ = (width + kTileBlocks * kGroupSide - 1) / (kTileBlocks * kGroupSide);
   tiles_y_ = (height + kGroupSide - 1) / kGroupSide;
-  row_begin_.assign(static_cast<std::size_t>(texels.pages) * height + 1, 0);
-  for (const atlas::SurfacePoint& point : texels.points) ++row_begin_[point.texel / width + 1];
-  for (std::size_t row = 1; row < row_begin_.size(); ++row) row_begin_[row] += row_begin_[row - 1];
 }
 
 std::size_t TexelGroups::tiles() const {
@@ -50,13 +47,8 @@ void TexelGroups::forEachGroup(std::size_t tile,
   for (std::uint32_t r = 0; r < rows; ++r) {
     const std::size_t row = static_cast<std::size_t>(page) * height + y0 + r;
     row_texel[r] = static_cast<std::uint32_t>(row) * width;
-    const auto begin = texels_.points.begin() + row_begin_[row],
-               end = texels_.points.begin() + row_begin_[row + 1];
-    const auto first = std::lower_bound(
-        begin, end, row_texel[r] + x_begin,
-        [](const atlas::SurfacePoint& point, std::uint32_t texel) { return point.texel < texel; });
-    next[r] = static_cast<std::uint32_t>(first - texels_.points.begin());
-    row_end[r] = row_begin_[row + 1];
+    const auto [begin, end] = rows_.within(row, x_begin, x_end);
+    next[r] = begin, row_end[r] = end;
   }
   for (std::uint32_t x = x_begin; x < x_end; x += kGroupSide) {
     std::array<std::uint32_t, kGroupTexels> block;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "relume/atlas/texels.h"
+#include "texel_rows.h"
 
 namespace relume::transport {
 
@@ -31,7 +32,7 @@ class TexelGroups {
 
   const atlas::Texels& texels_;
   std::uint32_t tiles_x_ = 0, tiles_y_ = 0;
-  std::vector<std::uint32_t> row_begin_;  // [pages * height + 1]
+  TexelRows rows_;
 };
 
 }  // namespace relume::transport

@@ -5,7 +5,8 @@
 //   1  coverage of each texel by each chart; the largest claim wins (an atomic maximum, hence the same for
 //   any thread count); 2  prefix sums over the page turn claims into places in Texels::points, and winners
 //   build their points there.
-// Memory beyond the result: 8 bytes per texel of the pages and 4 per triangle.
+// What the first pass cut is kept for the second as far as a fixed room goes. Memory beyond the result: 8
+// bytes per texel of the pages, 4 per triangle, and that room.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::size_t kWindowTexels = std::size_t{1} << 18;  // larger charts are cut into bands of rows
 constexpr double kLeastClaim = 1e-6;
+constexpr std::size_t kKeptBytes = std::size_t{32} << 20;
 
 /// Part of a chart, the unit of parallel work.
 struct Item {
@@ -67,7 +69,9 @@ class Raster {
       : scene_(scene),
         atlas_(atlas),
         triangles_(trianglesByChart(scene, atlas)),
-        items_(workItems(triangles_)) {}
+        items_(workItems(triangles_)),
+        kept_(items_.size()),
+        textures_(scene) {}
 
   std::size_t items() const { return items_.size(); }
 
@@ -78,11 +82,13 @@ class Raster {
         [&](std::size_t begin, std::size_t end) {
           FragmentGrid grid;
           for (std::size_t i = begin; i < end; ++i) {
+            fragmentsOf(triangles_, atlas_, items_[i].chart, items_[i].window, grid);
             forEachCell(items_[i], grid, [&](std::size_t texel, std::span<const Fragment> fragments) {
               double coverage = 0;
               for (const Fragment& f : fragments) coverage += static_cast<double>(f.coverage);
               if (coverage > kLeastClaim) raise(claims_[texel], claimOf(coverage, items_[i].chart));
             });
+            keep(i, grid);
           }
         },
         &progress);
@@ -102,7 +108,11 @@ class Raster {
         [&](std::size_t begin, std::size_t end) {
           FragmentGrid grid;
           for (std::size_t i = begin; i < end; ++i) {
-            FootprintBuilder builder(scene_, uvOf(items_[i]), items_[i].chart);
+            FootprintBuilder builder(scene_, uvOf(items_[i]), items_[i].chart, textures_);
+            if (kept_[i].first.empty())
+              fragmentsOf(triangles_, atlas_, items_[i].chart, items_[i].window, grid);
+            else
+              grid = std::move(kept_[i]);
             forEachCell(items_[i], grid, [&](std::size_t texel, std::span<const Fragment> fragments) {
               const Place place = placeOf(texel);
               if (place.chart != items_[i].chart) return;
@@ -120,6 +130,14 @@ class Raster {
   }
 
  private:
+  /// Which grids find room depends on the threads, what comes out of them does not.
+  void keep(std::size_t item, const FragmentGrid& grid) {
+    const std::size_t bytes =
+        grid.first.size() * sizeof(grid.first[0]) + grid.fragments.size() * sizeof(Fragment);
+    if (kept_bytes_.fetch_add(bytes, std::memory_order_relaxed) + bytes > kKeptBytes) return;
+    kept_[item].first = grid.first, kept_[item].fragments = grid.fragments;
+  }
+
   /// Moves the items' samples into one array, in item order, and frees them on the way.
   void join(std::vector<std::vector<SubSample>>& samples, Texels& texels) {
     std::size_t total = 0;
@@ -127,6 +145,7 @@ class Raster {
     RELUME_CHECK_LE(total, std::size_t{std::numeric_limits<std::uint32_t>::max()});
     texels.samples.reserve(total);
     for (std::size_t i = 0; i < items_.size(); ++i) {
+      if (samples[i].empty()) continue;
       const auto base = static_cast<std::uint32_t>(texels.samples.size());
       texels.samples.insert(texels.samples.end(), samples[i].begin(), samples[i].end());
       std::vector<SubSample>().swap(samples[i]);
@@ -160,8 +179,7 @@ class Raster {
   }
 
   template <class Body>
-  void forEachCell(const Item& item, FragmentGrid& grid, const Body& body) const {
-    fragmentsOf(triangles_, atlas_, item.chart, item.window, grid);
+  void forEachCell(const Item& item, const FragmentGrid& grid, const Body& body) const {
     const std::span<const Fragment> all(grid.fragments);
     std::size_t cell = 0;
     for (int y = item.window.y0; y < item.window.y1; ++y) {
@@ -176,6 +194,9 @@ class Raster {
   const Atlas& atlas_;
   ChartTriangles triangles_;
   std::vector<Item> items_;
+  std::vector<FragmentGrid> kept_;  // by item; empty: none
+  std::atomic<std::size_t> kept_bytes_ = 0;
+  MaterialTextures textures_;
   std::vector<std::uint64_t> claims_;  // per texel of all pages: a claim, later a Place
   std::uint32_t points_ = 0;
 };

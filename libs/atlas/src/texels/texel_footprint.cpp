@@ -27,6 +27,8 @@ namespace {
 constexpr double kInset = 1e-2;       // texels from an edge that places keep where they can
 constexpr double kFull = 1.0 - 1e-4;  // coverage that counts as the whole square
 constexpr double kPartialSamples = 16, kFullSamples = 8, kFewestSamples = 4;  // for each whole square covered
+constexpr double kFine =
+    2;  // pixels of a texture across a texel, from which they are counted, not interpolated
 constexpr double kGolden = 0.61803398874989485;
 
 DVec2 pulledInside(DVec2 p, const TriangleMap& map, const Polygon& polygon) {
@@ -39,9 +41,8 @@ DVec2 pulledInside(DVec2 p, const TriangleMap& map, const Polygon& polygon) {
 }  // namespace
 
 scene::Hit TriangleMap::hit(std::uint32_t instance, DVec2 p) const {
-  const DVec2 e1 = page[1] - page[0], e2 = page[2] - page[0], d = p - page[0];
-  const double det = cross(e1, e2);
-  double b1 = std::max(cross(d, e2) / det, 0.0), b2 = std::max(cross(e1, d) / det, 0.0);
+  const DVec2 d = p - page[0];
+  double b1 = std::max(cross(d, edge2), 0.0), b2 = std::max(cross(edge1, d), 0.0);
   const double sum = b1 + b2;
   if (sum > 1) b1 /= sum, b2 /= sum;
   return {instance, triangle, static_cast<float>(b1), static_cast<float>(b2)};
@@ -63,13 +64,16 @@ bool TriangleMap::containsWell(DVec2 p) const {
   return true;
 }
 
-FootprintBuilder::FootprintBuilder(const scene::Scene& scene, const InstanceUv& uv, std::uint32_t chart)
+FootprintBuilder::FootprintBuilder(const scene::Scene& scene, const InstanceUv& uv, std::uint32_t chart,
+                                   const MaterialTextures& textures)
     : scene_(scene),
       uv_(uv),
       instance_(scene.instances[uv.instance]),
       mesh_(scene.meshes[instance_.mesh]),
       material_(scene.materials[mesh_.material]),
-      chart_(chart) {
+      chart_(chart),
+      texture_(textures.of(mesh_)),
+      maps_(kMaps) {
   textured_ =
       material_.base_colour_texture || material_.metallic_roughness_texture || material_.emission_texture;
   coloured_ = !mesh_.colours.empty();
@@ -90,7 +94,30 @@ TriangleMap FootprintBuilder::makeMap(std::uint32_t triangle) const {
   const double det = cross(d1, d2);
   map.dp_dx = (e1 * d2.y - e2 * d1.y) / det;
   map.dp_dy = (e2 * d1.x - e1 * d2.x) / det;
+  map.edge1 = d1 / det, map.edge2 = d2 / det;
+  map.area = glm::length(glm::cross(map.dp_dx, map.dp_dy));
+  map.normal = map.shading = scene::geometricNormal(scene_, uv_.instance, triangle);
+  map.even = mesh_.flat_normals || mesh_.normals.empty();
+  if (!map.even && mesh_.normals[t.x] == mesh_.normals[t.y] && mesh_.normals[t.x] == mesh_.normals[t.z]) {
+    map.even = true;
+    map.shading = scene::shadingNormal(scene_, {uv_.instance, triangle, 0, 0});
+  }
   if (!textured_) return map;
+  if (texture_ != nullptr) {
+    const scene::TextureRef& ref = texture_->mapping();
+    const auto at = [&](int i) {
+      return DVec2(ref.apply(mesh_.uv[ref.uv_set][t[i]])) * DVec2(texture_->width(), texture_->height());
+    };
+    map.pixel = at(0);
+    const DVec2 t1 = at(1) - map.pixel, t2 = at(2) - map.pixel;
+    map.dpixel_dx = (t1 * d2.y - t2 * d1.y) / det, map.dpixel_dy = (t2 * d1.x - t1 * d2.x) / det;
+    map.texture_texels = std::max(glm::length(map.dpixel_dx), glm::length(map.dpixel_dy));
+    // Coarser textures are smooth from look-up to look-up: interpolated.
+    if (map.texture_texels > kFine) {
+      for (map.level = 0; map.texture_texels > 4 && map.level < 30; ++map.level) map.texture_texels /= 2;
+    }
+    return map;
+  }
   for (const scene::TextureRef* ref :
        {&material_.base_colour_texture, &material_.metallic_roughness_texture, &material_.emission_texture}) {
     if (!*ref || ref->uv_set > 1 || mesh_.uv[ref->uv_set].empty()) continue;
@@ -108,9 +135,10 @@ TriangleMap FootprintBuilder::makeMap(std::uint32_t triangle) const {
   return map;
 }
 
-const TriangleMap& FootprintBuilder::cachedMap(std::uint32_t triangle) {
-  if (cached_.triangle != triangle) cached_ = makeMap(triangle);
-  return cached_;
+const TriangleMap& FootprintBuilder::mapOf(std::uint32_t triangle) {
+  TriangleMap& map = maps_[triangle % kMaps];
+  if (map.triangle != triangle) map = makeMap(triangle);
+  return map;
 }
 
 Point FootprintBuilder::positionAt(const TriangleMap& map, DVec2 p) const {
@@ -120,19 +148,13 @@ Point FootprintBuilder::positionAt(const TriangleMap& map, DVec2 p) const {
 }
 
 SurfacePoint FootprintBuilder::pointAt(const TriangleMap& map, DVec2 p) {
-  if (normal_triangle_ != map.triangle) {
-    normal_ = scene::geometricNormal(scene_, uv_.instance, map.triangle);
-    normal_triangle_ = map.triangle;
-  }
   SurfacePoint point;
   point.chart = chart_;
   point.instance = uv_.instance;
   point.triangle = map.triangle;
   point.position = positionAt(map, p);
-  point.geometric_normal = normal_;
-  point.shading_normal = mesh_.flat_normals || mesh_.normals.empty()
-                             ? normal_
-                             : scene::shadingNormal(scene_, map.hit(uv_.instance, p));
+  point.geometric_normal = map.normal;
+  point.shading_normal = map.even ? map.shading : scene::shadingNormal(scene_, map.hit(uv_.instance, p));
   point.dp_dx = Vec3(map.dp_dx);
   point.dp_dy = Vec3(map.dp_dy);
   return point;
@@ -141,7 +163,7 @@ SurfacePoint FootprintBuilder::pointAt(const TriangleMap& map, DVec2 p) {
 void FootprintBuilder::cut(int x, int y, std::span<const Fragment> fragments) {
   pieces_.clear();
   for (const Fragment& f : fragments) {
-    Piece piece{makeMap(f.triangle), {}, static_cast<double>(f.coverage)};
+    Piece piece{mapOf(f.triangle), {}, static_cast<double>(f.coverage)};
     piece.polygon = clipToTexel(piece.map.page, x, y);
     if (piece.polygon.count >= 3) pieces_.push_back(piece);
   }
@@ -213,7 +235,28 @@ bool FootprintBuilder::flat(DVec2 centre, const TriangleMap& base) const {
   return true;
 }
 
+void FootprintBuilder::addBlock(const TriangleMap& map, DVec2 p, double weight, Mean& mean) const {
+  const DVec2 d = p - map.page[0];
+  const Vec4 found = texture_->look(map.level, map.pixel + d.x * map.dpixel_dx + d.y * map.dpixel_dy);
+  Vec3 albedo = Vec3(found) * Vec3(material_.base_colour);
+  if (coloured_) albedo *= vertexColour(map, p);
+  mean.albedo += static_cast<float>(weight) * albedo;
+  mean.emission += static_cast<float>(weight) * found.a * material_.emission;
+  mean.weight += weight * static_cast<double>(found.a), mean.all_weight += weight;
+}
+
+Vec3 FootprintBuilder::vertexColour(const TriangleMap& map, DVec2 p) const {
+  const scene::Hit hit = map.hit(uv_.instance, p);
+  const UVec3 t = mesh_.triangles[map.triangle];
+  return Vec3((1 - hit.b1 - hit.b2) * mesh_.colours[t.x] + hit.b1 * mesh_.colours[t.y] +
+              hit.b2 * mesh_.colours[t.z]);
+}
+
 void FootprintBuilder::addSurface(const TriangleMap& map, DVec2 p, double weight, Mean& mean) const {
+  map.level >= 0 ? addBlock(map, p, weight, mean) : addInterpolated(map, p, weight, mean);
+}
+
+void FootprintBuilder::addInterpolated(const TriangleMap& map, DVec2 p, double weight, Mean& mean) const {
   const scene::Surface surface = scene::surfaceAt(scene_, map.hit(uv_.instance, p));
   const Vec3 albedo = surface.albedo().rgb * static_cast<float>(weight);
   const Vec3 emission = surface.emission.rgb * static_cast<float>(weight);
@@ -263,7 +306,7 @@ void FootprintBuilder::addPiece(const Piece& piece, Mean& mean) const {
 }
 
 void FootprintBuilder::store(const Mean& mean, SurfacePoint& point) const {
-  const bool opaque = mean.weight > 1e-3 * mean.all_weight;
+  const bool opaque = mean.opaque();
   const float scale = static_cast<float>(1.0 / (opaque ? mean.weight : mean.all_weight));
   point.albedo = Albedo((opaque ? mean.albedo : mean.all_albedo) * scale);
   point.emission = Radiance((opaque ? mean.emission : mean.all_emission) * scale);
@@ -276,9 +319,9 @@ SurfacePoint FootprintBuilder::build(int x, int y, std::span<const Fragment> fra
   Mean mean;
   const bool varies = textured_ || coloured_;
   if (fragments.size() == 1 && fragments[0].coverage == 1.0f) {
-    const TriangleMap& map = cachedMap(fragments[0].triangle);
+    const TriangleMap& map = mapOf(fragments[0].triangle);
     point = pointAt(map, centre);
-    point.area = static_cast<float>(map.area());
+    point.area = static_cast<float>(map.area);
     if (varies) addSquare(map, x, y, mean);
   } else {
     cut(x, y, fragments);
@@ -289,7 +332,7 @@ SurfacePoint FootprintBuilder::build(int x, int y, std::span<const Fragment> fra
     double coverage = 0, metres = 0;
     for (const Piece& piece : pieces_) {
       coverage += piece.coverage;
-      metres += piece.coverage * piece.map.area();
+      metres += piece.coverage * piece.map.area;
       if (varies) addPiece(piece, mean);
     }
     point.coverage = static_cast<float>(std::min(coverage, 1.0));
@@ -305,6 +348,11 @@ SurfacePoint FootprintBuilder::build(int x, int y, std::span<const Fragment> fra
     }
   }
   if (varies) {
+    if (!mean.opaque() && texture_ != nullptr) {  // blocks know nothing of what is transparent
+      mean = Mean();
+      const TriangleMap& map = mapOf(point.triangle);
+      addInterpolated(map, centre, 1.0, mean);
+    }
     store(mean, point);
   } else {
     if (!constant_known_) {

@@ -7,6 +7,7 @@
 
 #include "relume/atlas/texels.h"
 #include "texels/coverage.h"
+#include "texels/material_texture.h"
 
 namespace relume::atlas {
 
@@ -16,10 +17,18 @@ struct TriangleMap {
   std::array<DVec2, 3> page{};
   std::array<glm::dvec3, 3> world{};
   glm::dvec3 dp_dx{0}, dp_dy{0};  ///< metres per texel
+  double area = 0;                ///< m^2 per texel
+  Normal normal{0, 0, 1};         ///< of the face, world
+  bool even = false;              ///< one shading normal all over
+  Normal shading{0, 0, 1};        ///< then this
+  DVec2 edge1{0}, edge2{0};       ///< of the page, from page[0], over twice the signed area
   double texture_texels = 0;      ///< texture texels across one texel of the page; 0: no texture
 
-  double area() const { return glm::length(glm::cross(dp_dx, dp_dy)); }  ///< m^2 per texel
-  scene::Hit hit(std::uint32_t instance, DVec2 p) const;                 ///< clamped into the triangle
+  /// Fine textures are read as blocks of 2^level pixels, and `texture_texels` counts these; -1: as they are.
+  int level = -1;
+  DVec2 pixel{0}, dpixel_dx{0}, dpixel_dy{0};  ///< of page[0], and pixels per texel
+
+  scene::Hit hit(std::uint32_t instance, DVec2 p) const;  ///< clamped into the triangle
   bool contains(DVec2 p) const;
   bool containsWell(DVec2 p) const;  ///< at least kInset from each edge
 };
@@ -27,7 +36,8 @@ struct TriangleMap {
 /// Makes the surface points of one chart. Not shared between threads.
 class FootprintBuilder {
  public:
-  FootprintBuilder(const scene::Scene& scene, const InstanceUv& uv, std::uint32_t chart);
+  FootprintBuilder(const scene::Scene& scene, const InstanceUv& uv, std::uint32_t chart,
+                   const MaterialTextures& textures);
 
   /// fragments: of one chart in the square of texel (x, y), at least one. Sub-samples go to the end of
   /// `samples`, and `first_sample` counts from its beginning. `texel` is left to the caller.
@@ -44,7 +54,7 @@ class FootprintBuilder {
     std::size_t piece = 0;
   };
 
-  const TriangleMap& cachedMap(std::uint32_t triangle);
+  const TriangleMap& mapOf(std::uint32_t triangle);
   TriangleMap makeMap(std::uint32_t triangle) const;
   void cut(int x, int y, std::span<const Fragment> fragments);
   /// The place in a piece that is p or nearest to p, a little inside.
@@ -62,8 +72,12 @@ class FootprintBuilder {
     double weight = 0;
     Vec3 all_albedo{0}, all_emission{0};  // without opacity, for texels in which nothing is opaque
     double all_weight = 0;
+    bool opaque() const { return weight > 1e-3 * all_weight; }
   };
   void addSurface(const TriangleMap& map, DVec2 p, double weight, Mean& mean) const;
+  void addInterpolated(const TriangleMap& map, DVec2 p, double weight, Mean& mean) const;
+  void addBlock(const TriangleMap& map, DVec2 p, double weight, Mean& mean) const;
+  Vec3 vertexColour(const TriangleMap& map, DVec2 p) const;
   void addSquare(const TriangleMap& map, int x, int y, Mean& mean) const;
   void addPiece(const Piece& piece, Mean& mean) const;
   void store(const Mean& mean, SurfacePoint& point) const;
@@ -75,9 +89,9 @@ class FootprintBuilder {
   const scene::Material& material_;
   std::uint32_t chart_;
   bool textured_ = false, coloured_ = false;
-  TriangleMap cached_;
-  std::uint32_t normal_triangle_ = scene::kNone;
-  Normal normal_{0, 0, 1};
+  const MaterialTexture* texture_ = nullptr;  // of the material, where there can be one
+  static constexpr std::uint32_t kMaps = 64;
+  std::vector<TriangleMap> maps_;  // of triangles lately met, each at its number modulo kMaps
   std::vector<Piece> pieces_;
   SurfacePoint constant_;  // carries albedo and emission where nothing varies
   bool constant_known_ = false;

@@ -24,7 +24,7 @@ float shifted(float u, float by) {
 bool LightRays::add(const GroupRays& rays, Reach reach, std::uint32_t texel, std::uint32_t sample,
                     std::uint32_t row) {
   const std::size_t at = std::size_t{sample} * LightTable::kColumns + rays.columnOf(texel);
-  const Vec2 shift = rays.shift(texel);
+  const Vec2 shift = rays.shift();
   const GroupRays::Spot spot = rays.spot(texel, {table_.u[at], table_.v[at]});
   const LightSample light =
       emitters_.sample(reach, spot.origin, spot.geometric_normal,

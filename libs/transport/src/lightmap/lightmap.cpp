@@ -91,7 +91,8 @@ class GroupSolver {
   explicit GroupSolver(const Shared& shared)
       : shared_(shared),
         options_(shared.options),
-        rays_(shared.tracer.scene(), shared.texels, shared.directions, options_.seed, kInfinity),
+        rays_(shared.tracer.scene(), shared.texels, shared.directions, options_.seed, kInfinity,
+              Alignment::kTurned),
         gatherer_(shared.tracer, shared.lookup, shared.emitters),
         light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect) {}
 
@@ -106,11 +107,12 @@ class GroupSolver {
     std::iota(all_.begin(), all_.end(), 0u);
     const float allowed = squaredTolerance(group);
     if (shared_.direct())
-      sample(lightMinimum(), allowed, light_,
-             [&](auto first, auto count) { light_rays_.trace(rays_, all_, first, count,
+      sample(lightMinimum(), allowed, light_, [&](auto first, auto count) {
+        light_rays_.trace(rays_, all_, first, count,
                           [&](std::uint32_t texel, std::uint32_t sample, Vec3 irradiance, float) {
                             values_[std::size_t{sample} * kColumns + texel] += irradiance;
-                          }); });
+                          });
+      });
     // Also for direct light alone: without a gather ray nothing tells whether a texel lies inside something.
     sample(options_.min_samples, allowed, gathered_, [&](auto first, auto count) { gather(first, count); });
     for (std::uint32_t i = 0; i < group.size(); ++i) {

@@ -76,7 +76,7 @@ struct RadianceCache::Builder {
   /// Solves the group for one side: row i of the found is slots[i].
   struct Worker {
     explicit Worker(const Builder& b)
-        : rays(b.tracer.scene(), b.texels, b.directions, b.options.seed, kInfinity),
+        : rays(b.tracer.scene(), b.texels, b.directions, b.options.seed, kInfinity, Alignment::kTurned),
           gatherer(b.tracer, b.lookup, b.emitters),
           light_rays(b.tracer, b.emitters, b.lights, false) {}
     GroupRays rays;

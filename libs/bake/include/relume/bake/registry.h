@@ -40,9 +40,10 @@ struct LayerContext {
 /// A computation in which every texel stands alone: its row of floats depends on nothing farther away than
 /// `reach`. That is what makes it resumable, and what lets a re-bake touch only texels near a change.
 struct TexelSolver {
-  int row = 0;              ///< floats per texel
-  float reach = kInfinity;  ///< metres
-  Digest key;               ///< of every setting that the rows depend on besides the scene
+  int row = 0;                     ///< floats per texel
+  float reach = kInfinity;         ///< metres
+  Digest key;                      ///< of every setting that the rows depend on besides the scene
+  std::uint32_t most_rays = 4096;  ///< for one texel; tells how much work is at stake between two saves
   /// Fills rows, shape [which][row], of the texels (indices of Texels::points) in `which`; returns rays
   /// spent.
   std::function<std::uint64_t(std::span<const std::uint32_t> which, std::span<float> rows, Progress&)> solve;

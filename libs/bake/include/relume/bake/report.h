@@ -73,6 +73,7 @@ struct LayerReport {
   std::size_t stand_out = 0, beside_invalid = 0, see_backs = 0;  ///< texels with each sign
   std::vector<Suspect> suspects;    ///< those that stand out, the most severe first, at most kMostSuspects
   std::vector<std::uint8_t> marks;  ///< shape: [covered texels]; SuspectSign and kInvalidMark
+  std::vector<float> errors;        ///< shape: [covered texels]; standard error as estimated
 };
 inline constexpr std::size_t kMostSuspects = 1000;
 

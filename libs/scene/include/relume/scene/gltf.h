@@ -74,11 +74,20 @@ struct AtlasUse {
   std::vector<Vec2> uv;                      ///< TEXCOORD_1 of each new vertex, in [0, 1]
 };
 
+/// A page of irradiance for viewers: E = intensity * texel.
+struct LightmapPage {
+  std::vector<std::byte> png;  ///< RGB, linear
+  float intensity = 1;         ///< W/m^2
+};
+
 struct BakeOutput {
   std::vector<AtlasUse> uses;
   /// PNG files, one per page, wired as occlusionTexture on TEXCOORD_1 of the materials used there; empty:
   /// leave materials.
   std::vector<std::vector<std::byte>> occlusion_png;
+  /// One per page, wired as MOZ_lightmap on TEXCOORD_1 of the materials used there, but for unlit ones;
+  /// empty: leave materials.
+  std::vector<LightmapPage> lightmap;
   /// Root extension RELUME_transfer: its JSON, in which {"bufferView": k} counts in `views`; null: none.
   nlohmann::json transfer;
   std::vector<std::vector<std::byte>> views;
