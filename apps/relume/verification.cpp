@@ -136,7 +136,7 @@ std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::Bake
 Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset,
                             const VerifyOptions& options, Progress& progress) {
   const asset::Layer& layer = layerOf(asset, options.layer);
-  const picture::BakedValues baked(scene, &asset, picture::View::kOcclusion, layer.name);
+  const picture::BakedValues baked(scene, &asset, picture::View::kLightmap, layer.name);
   Verification result;
   result.layer = layer.name, result.error_estimate = layer.error_estimate;
   const transport::Reference reference(scene);

@@ -20,6 +20,8 @@ LightmapOptions optionsOf(const LayerContext& context, const Parameters& paramet
   const std::string& part = std::get<std::string>(parameters.at("part"));
   const double bounces = std::get<double>(parameters.at("bounces"));
   LightmapOptions options;
+  if (std::get<std::string>(parameters.at("solver")) == "path")
+    options.method = transport::LightmapMethod::kPath;
   options.part = part == "direct"     ? transport::Part::kDirect
                  : part == "indirect" ? transport::Part::kIndirect
                                       : transport::Part::kTotal;
@@ -57,6 +59,7 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
   Hasher hasher;
   hasher
       .add("lightmap 1")  // raise when the solver's results change
+      .add(o.method)
       .add(o.part)
       .add(o.materials)
       .add(o.max_bounces)

@@ -70,7 +70,12 @@ std::vector<LayerKind> makeRegistry() {
        .receivers = "texels, RGB irradiance",
        .codec = "none",
        .parameters =
-           {{"part", Type::kChoice, "total", {"total", "direct", "indirect"}, "which light"},
+           {{"solver",
+             Type::kChoice,
+             "gather",
+             {"gather", "path"},
+             "path: unbiased random walks, slow, to judge others by"},
+            {"part", Type::kChoice, "total", {"total", "direct", "indirect"}, "which light"},
             {"bounces", Type::kCount, "inf", {}, "reflections between a light and a texel; inf: all"},
             {"materials",
              Type::kChoice,

@@ -12,6 +12,7 @@
 #include "group_solving.h"
 #include "lightmap/gatherer.h"
 #include "lightmap/light_rays.h"
+#include "lightmap/path_group.h"
 #include "lightmap/radiance_cache.h"
 #include "relume/core/check.h"
 #include "relume/core/parallel.h"
@@ -22,7 +23,7 @@ namespace {
 constexpr std::uint32_t kColumns = SampleTable::kColumns;
 // Of the irradiance that a texel's tolerance is a share of: not below this part of the scene's mean.
 constexpr float kDarkest = 0.25f;
-constexpr std::uint32_t kCacheLightSamples = 8;
+constexpr std::uint32_t kLeastLightSamples = 4;  // of a texel, for the cache
 
 /// The means of the samples of a group's texels, round by round, and how far they may be off.
 class Estimate {
@@ -210,7 +211,8 @@ struct LightmapSolver::Impl {
   void fillCache(Progress& progress) {
     if (cache) return;
     CacheOptions how;
-    how.gather_samples = options.cache_samples, how.light_samples = kCacheLightSamples;
+    how.gather_samples = options.cache_samples,
+    how.light_samples = std::max(options.cache_samples / 4, kLeastLightSamples);
     how.bounces = options.max_bounces < 0 ? options.max_bounces : std::max(options.max_bounces - 1, 0);
     how.materials = options.materials;
     how.seed = options.seed + 0x9e3779b97f4a7c15u;  // apart from the last gathering
@@ -253,17 +255,25 @@ LightmapSolver::~LightmapSolver() = default;
 LightmapSolver::LightmapSolver(LightmapSolver&&) noexcept = default;
 
 LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::uint32_t> which) {
-  const bool first = !impl_->cache;
-  impl_->fillCache(progress);
   const Impl& impl = *impl_;
-  const Shared shared{impl.tracer,     impl.texels, impl.options, impl.emitters, impl.lookup,
-                      impl.directions, impl.lights, *impl.cache,  impl.mean};
   LightmapResult result;
   const std::size_t count = which.empty() ? impl.texels.points.size() : which.size();
   result.value.resize(count), result.error.resize(count), result.back_share.resize(count);
-  result.rays = solveGroups(
-      impl.groups, impl.texels, which, progress, [&] { return std::make_unique<GroupSolver>(shared); },
-      [&](GroupSolver& solver, auto group, auto slots) { solver.solve(group, slots, result); });
+  const auto solve = [&](auto& solver, auto group, auto slots) { solver.solve(group, slots, result); };
+  if (impl.options.method == LightmapMethod::kPath) {
+    const auto make = [&] {
+      return std::make_unique<PathGroup>(impl.tracer, impl.texels, impl.lookup, impl.emitters,
+                                         impl.directions, impl.options);
+    };
+    result.rays = solveGroups(impl.groups, impl.texels, which, progress, make, solve);
+    return result;
+  }
+  const bool first = !impl.cache;
+  impl_->fillCache(progress);
+  const Shared shared{impl.tracer,     impl.texels, impl.options, impl.emitters, impl.lookup,
+                      impl.directions, impl.lights, *impl.cache,  impl.mean};
+  const auto make = [&] { return std::make_unique<GroupSolver>(shared); };
+  result.rays = solveGroups(impl.groups, impl.texels, which, progress, make, solve);
   if (first) result.rays += impl.cache->rays();
   return result;
 }

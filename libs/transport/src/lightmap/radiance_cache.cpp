@@ -19,9 +19,9 @@ constexpr float kBuriedShare = 0.25f;
 constexpr double kConverged = 1e-4;
 constexpr int kMostBounces = 4096;
 
-double sumOf(const std::vector<Vec3>& values) {
+double sumOf(std::span<const Vec4> values) {
   double sum = 0;
-  for (const Vec3& v : values) sum += static_cast<double>(v.x + v.y + v.z);
+  for (const Vec4& v : values) sum += static_cast<double>(v.x + v.y + v.z);
   return sum;
 }
 
@@ -56,7 +56,7 @@ struct RadianceCache::Builder {
         progress(the_progress),
         directions(options.gather_samples, options.gather_samples, options.seed, BlockSamples::kShared),
         lights(options.light_samples, options.light_samples, options.seed, BlockSamples::kShared),
-        gloss(directions.z) {}
+        gloss(options.materials == Materials::kFull ? directions.z : std::vector<float>()) {}
 
   void build() {
     const std::size_t points = texels.points.size();
@@ -67,9 +67,14 @@ struct RadianceCache::Builder {
     gatherFronts();
     std::vector<std::uint8_t> buried(points);
     for (std::size_t i = 0; i < points; ++i) buried[i] = cache.back_share_[i] > kBuriedShare;
-    cache.substitute_ = substitutes(texels, buried);
     gatherBacks();
+    nothing = static_cast<std::uint32_t>(points + back.size());
+    std::replace(cache.back_of_.begin(), cache.back_of_.end(), scene::kNone, nothing);
+    const std::vector<std::uint32_t> substitute = substitutes(texels, buried);
+    place(front, substitute), place(back, substitute);
     handOn();
+    for (std::size_t i = 0; i < points; ++i) cache.radiance_[i] = now[substitute[i]];
+    for (std::size_t i = points; i < now.size(); ++i) cache.radiance_[i] = now[i];
   }
 
  private:
@@ -156,13 +161,14 @@ struct RadianceCache::Builder {
   /// Backs that rays have met, then those that the rays from these meet, until there are no new ones.
   void gatherBacks() {
     if (std::find(wanted.begin(), wanted.end(), 1) == wanted.end()) return;
-    cache.back_of_.assign(texels.points.size(), scene::kNone);
+    const auto points = static_cast<std::uint32_t>(texels.points.size());
+    cache.back_of_.assign(points, scene::kNone);
     for (;;) {
       struct Block {
         std::vector<std::uint32_t> points, slots;
       };
       std::vector<Block> blocks;
-      auto next = static_cast<std::uint32_t>(back.reflectance.size());
+      auto next = static_cast<std::uint32_t>(back.size());
       for (std::size_t tile = 0; tile < groups.tiles(); ++tile) {
         groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
           const auto is_wanted = [&](std::uint32_t i) { return wanted[i] != 0; };
@@ -171,7 +177,7 @@ struct RadianceCache::Builder {
           Block block{{group.begin(), group.end()}, {}};
           for (const std::uint32_t i : group) {
             block.slots.push_back(next);
-            cache.back_of_[i] = next++;
+            cache.back_of_[i] = points + next++;
             back.reflectance.push_back(front.reflectance[i]);
           }
           blocks.push_back(std::move(block));
@@ -197,56 +203,78 @@ struct RadianceCache::Builder {
 
   /// How glossy lobes weigh the light of a gather sample.
   ggx::Reflected glossOf(const Found& found, std::size_t entry, std::uint32_t sample) const {
-    return gloss.at(found.reflectance[entry].roughness,
-                    std::size_t{sample} * SampleTable::kColumns + found.column[entry]);
-  }
-
-  /// E that an entry's rays find in the cache of the bounce before, and the radiance that then leaves it.
-  void reflect(const Found& found, std::size_t entry, Vec3& indirect, Vec3& out) const {
-    const std::uint32_t n = options.gather_samples;
     const Reflectance& r = found.reflectance[entry];
-    Vec3 sum(0.0f), scaled(0.0f), biased(0.0f);
-    for (std::uint32_t s = 0; s < n; ++s) {
-      const SideOfTexel end = found.ends[entry * n + s];
-      if (end == kNoTexel) continue;
-      const Vec3 radiance = cache.radiance(end);
-      sum += radiance;
-      if (!r.glossy()) continue;
-      const ggx::Reflected share = glossOf(found, entry, s);
-      scaled += radiance * share.scale, biased += radiance * share.bias;
-    }
-    const float per_ray = kPi / static_cast<float>(n);
-    indirect = sum * per_ray;
-    out = kInvPi * (r.diffuse * (found.direct[entry] + indirect) + found.glossy[entry] +
-                    per_ray * (r.scale * scaled + r.bias * biased));
+    if (!r.glossy()) return {0, 0};
+    return gloss.at(r.roughness, std::size_t{sample} * SampleTable::kColumns + found.column[entry]);
   }
 
-  void bounce(const Found& found, std::vector<Vec3>& indirect, std::vector<Vec3>& out) const {
-    parallelFor(found.size(), 2048, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) reflect(found, i, indirect[i], out[i]);
+  /// Ends of rays become places in `now`.
+  void place(Found& found, const std::vector<std::uint32_t>& substitute) const {
+    parallelFor(found.ends.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SideOfTexel surface = found.ends[i];
+        if ((surface & kBackBit) == 0) {
+          found.ends[i] = substitute[surface];
+        } else {
+          const bool known = surface != kNoTexel && !cache.back_of_.empty();
+          found.ends[i] = known ? cache.back_of_[surface & ~kBackBit] : nothing;
+        }
+      }
     });
   }
 
-  static std::vector<Vec3> reflectedDirect(const Found& found) {
-    std::vector<Vec3> out(found.size());
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = kInvPi * (found.reflectance[i].diffuse * found.direct[i] + found.glossy[i]);
-    return out;
+  /// Light of the bounce before that an entry's rays find; what then leaves the entry.
+  Vec4 reflect(const Found& found, std::size_t entry, Vec3* indirect) const {
+    const std::uint32_t n = options.gather_samples;
+    const Reflectance& r = found.reflectance[entry];
+    const std::uint32_t* end = &found.ends[entry * n];
+    Vec4 sum(0.0f), glossy(0.0f);
+    if (!r.glossy()) {
+      for (std::uint32_t s = 0; s < n; ++s) sum += now[end[s]];
+    } else {
+      Vec4 scaled(0.0f), biased(0.0f);
+      for (std::uint32_t s = 0; s < n; ++s) {
+        const Vec4 radiance = now[end[s]];
+        const ggx::Reflected share = glossOf(found, entry, s);
+        sum += radiance, scaled += radiance * share.scale, biased += radiance * share.bias;
+      }
+      glossy = Vec4(r.scale, 0) * scaled + Vec4(r.bias, 0) * biased;
+    }
+    const float per_ray = kPi / static_cast<float>(n);
+    if (indirect) *indirect = Vec3(sum) * per_ray;
+    return kInvPi * (Vec4(r.diffuse, 0) * (Vec4(found.direct[entry], 0) + per_ray * sum) +
+                     Vec4(found.glossy[entry], 0) + per_ray * glossy);
+  }
+
+  /// Calls body(found, entry, place in `now`) for all entries.
+  template <class Body>
+  void forEachEntry(const Body& body) const {
+    const std::size_t fronts = front.size();
+    parallelFor(fronts + back.size(), 2048, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) i < fronts ? body(front, i, i) : body(back, i - fronts, i);
+    });
   }
 
   void handOn() {
-    std::vector<Vec3> back_indirect(back.size()), next_front(front.size()), next_back(back.size());
+    now.assign(front.size() + back.size() + 1, Vec4(0.0f));
+    std::vector<Vec4> next(now.size(), Vec4(0.0f));
     cache.indirect_.assign(front.size(), Vec3(0.0f));
-    cache.front_ = reflectedDirect(front), cache.back_ = reflectedDirect(back);
+    cache.radiance_.assign(now.size(), Vec3(0.0f));
+    forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
+      now[place] =
+          Vec4(kInvPi * (found.reflectance[entry].diffuse * found.direct[entry] + found.glossy[entry]), 0);
+    });
     const int most = options.bounces < 0 ? kMostBounces : options.bounces;
-    double total = sumOf(cache.front_) + sumOf(cache.back_), change = total;
+    double total = sumOf(now), change = total;
     for (int k = 0; k < most && total > 0; ++k) {
-      bounce(front, cache.indirect_, next_front), bounce(back, back_indirect, next_back);
-      cache.front_.swap(next_front), cache.back_.swap(next_back);
-      const double now = sumOf(cache.front_) + sumOf(cache.back_), step = now - total;
+      forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
+        next[place] = reflect(found, entry, &found == &front ? &cache.indirect_[entry] : nullptr);
+      });
+      now.swap(next);
+      const double sum = sumOf(now), step = sum - total;
       // Each bounce adds less than the last by about the same ratio.
       const double ratio = change > 0 ? std::min(step / change, 0.999) : 0;
-      total = now, change = step;
+      total = sum, change = step;
       if (step * ratio / (1 - ratio) < kConverged * total) break;
       progress.throwIfCancelled();
     }
@@ -265,6 +293,8 @@ struct RadianceCache::Builder {
   const LightTable lights;
   const GlossTable gloss;
   Found front, back;
+  std::uint32_t nothing = 0;         // place in `now` that stays dark
+  std::vector<Vec4> now;             // radiance: fronts, backs, nothing; four wide for vector code
   std::vector<std::uint8_t> wanted;  // by point: its back is
 };
 

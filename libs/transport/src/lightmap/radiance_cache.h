@@ -35,10 +35,9 @@ class RadianceCache {
 
   /// Radiance that leaves the surface at the end of a ray, the same in all directions.
   Vec3 radiance(SideOfTexel surface) const {
-    if ((surface & kBackBit) == 0) return front_[substitute_[surface]];
+    if ((surface & kBackBit) == 0) return radiance_[surface];
     if (surface == kNoTexel || back_of_.empty()) return Vec3(0.0f);
-    const std::uint32_t back = back_of_[surface & ~kBackBit];
-    return back == scene::kNone ? Vec3(0.0f) : back_[back];
+    return radiance_[back_of_[surface & ~kBackBit]];
   }
 
   /// An estimate of E at the front of a point, without what comes straight from emitters, and of that; noisy.
@@ -51,9 +50,8 @@ class RadianceCache {
 
  private:
   struct Builder;
-  std::vector<Vec3> front_, back_;         ///< by point; by number of the back
-  std::vector<std::uint32_t> substitute_;  ///< by point: itself, or who answers for it
-  std::vector<std::uint32_t> back_of_;     ///< by point: number of its back, or kNone; empty: there is none
+  std::vector<Vec3> radiance_;          ///< fronts by point, then backs by number, then nothing
+  std::vector<std::uint32_t> back_of_;  ///< by point: place in radiance_; empty: there are no backs
   std::vector<Vec3> direct_, indirect_;
   std::vector<float> back_share_;
   std::uint64_t rays_ = 0;

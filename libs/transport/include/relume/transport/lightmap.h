@@ -25,7 +25,13 @@
 
 namespace relume::transport {
 
+enum class LightmapMethod : std::uint8_t {
+  kGather,  ///< as said above
+  kPath,    ///< random walks for every texel: unbiased, a hundred times slower; samples are paths
+};
+
 struct LightmapOptions {
+  LightmapMethod method = LightmapMethod::kGather;
   Part part = Part::kTotal;
   Materials materials = Materials::kFull;
   int max_bounces = ReferenceOptions::kUnlimited;     ///< as in ReferenceOptions
