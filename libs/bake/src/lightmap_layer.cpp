@@ -4,6 +4,7 @@
 #include "relume/core/check.h"
 #include "relume/transport/lightmap.h"
 #include "relume/transport/occlusion.h"
+#include "scene_digest.h"
 
 namespace relume::bake {
 namespace {
@@ -70,6 +71,10 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
       .add(o.cache_samples)
       .add(o.seed);
   addLights(scene, hasher);
+  for (const scene::Material& m : scene.materials) {
+    hasher.add(m.normal_scale);
+    addTexture(hasher, scene, m.normal_texture);
+  }
   return hasher.digest();
 }
 

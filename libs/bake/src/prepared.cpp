@@ -36,6 +36,12 @@ atlas::AtlasOptions withinMemory(const BakeOptions& options) {
   return result;
 }
 
+/// Normal maps are read only for those who use them.
+bool seesNormalMaps(const LayerSpec& spec) {
+  const auto materials = spec.values.find("materials");
+  return find(spec.kind).has("materials") && (materials == spec.values.end() || materials->second == "full");
+}
+
 /// A scene in which nothing shines gets a white sky: a black bake helps nobody.
 void requireLight(scene::Scene& scene, const std::vector<PreparedLayer>& layers, Warnings& warnings) {
   const auto needs = [](const PreparedLayer& layer) { return layer.kind->needs_light; };
@@ -80,7 +86,8 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   for (const LayerSpec& spec : options.layers) find(spec.kind);  // wrong names fail before any work
   {
     Stage stage(progress, "import", 1);
-    p->scene = scene::gltf::import(document, warnings);
+    const bool normal_maps = std::any_of(options.layers.begin(), options.layers.end(), seesNormalMaps);
+    p->scene = scene::gltf::import(document, warnings, {.normal_maps = normal_maps});
     if (options.lights) p->scene.lights = *options.lights;
     if (options.environment) p->scene.environment = *options.environment;
   }

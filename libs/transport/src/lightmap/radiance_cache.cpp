@@ -102,7 +102,7 @@ struct RadianceCache::Builder {
     const auto arrived = [&](std::uint32_t slot, Vec3 irradiance, ggx::Reflected gloss_share) {
       const Reflectance& r = found.reflectance[slot];
       found.direct[slot] += irradiance;
-      found.glossy[slot] += irradiance * (r.scale * gloss_share.scale + r.bias * gloss_share.bias);
+      found.glossy[slot] += r.direct * irradiance * (r.scale * gloss_share.scale + r.bias * gloss_share.bias);
     };
     w.light_rays.trace(w.rays, w.active, 0, options.light_samples,
                        [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float cosine) {
@@ -242,7 +242,7 @@ struct RadianceCache::Builder {
     }
     const float per_ray = kPi / static_cast<float>(n);
     if (indirect) *indirect = Vec3(sum) * per_ray;
-    return kInvPi * (Vec4(r.diffuse, 0) * (Vec4(found.direct[entry], 0) + per_ray * sum) +
+    return kInvPi * (Vec4(r.diffuse, 0) * (Vec4(r.direct * found.direct[entry], 0) + per_ray * sum) +
                      Vec4(found.glossy[entry], 0) + per_ray * glossy);
   }
 
@@ -261,8 +261,8 @@ struct RadianceCache::Builder {
     cache.indirect_.assign(front.size(), Vec3(0.0f));
     cache.radiance_.assign(now.size(), Vec3(0.0f));
     forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
-      now[place] =
-          Vec4(kInvPi * (found.reflectance[entry].diffuse * found.direct[entry] + found.glossy[entry]), 0);
+      const Reflectance& r = found.reflectance[entry];
+      now[place] = Vec4(kInvPi * (r.diffuse * r.direct * found.direct[entry] + found.glossy[entry]), 0);
     });
     const int most = options.bounces < 0 ? kMostBounces : options.bounces;
     double total = sumOf(now), change = total;

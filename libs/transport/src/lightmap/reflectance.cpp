@@ -75,9 +75,11 @@ std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Te
       // Transmission is no matter here: its share of the rays does not end on the surface.
       r.diffuse = point.albedo.rgb;
       if (materials == Materials::kLambert) continue;
-      const bool look = material.metallic > 0 || material.metallic_roughness_texture;
-      const scene::Surface surface = look ? scene::surfaceAt(scene, hitOf(scene, point))
-                                          : scene::Surface{Vec4(1), 0, material.roughness, {}};
+      const bool look =
+          material.metallic > 0 || material.metallic_roughness_texture || material.normal_texture;
+      const scene::Hit hit = look ? hitOf(scene, point) : scene::Hit();
+      const scene::Surface surface =
+          look ? scene::surfaceAt(scene, hit) : scene::Surface{Vec4(1), 0, material.roughness, {}};
       r.roughness = GlossTable::indexOf(surface.roughness);
       const Means& mean = means[r.roughness];
       const Vec3 coat(kDielectric), metal(surface.base_colour);
@@ -85,6 +87,12 @@ std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Te
       r.diffuse *= Vec3(1.0f) - mean.share(coat);
       r.scale = (1.0f - m) * mean.compensation(coat) * coat + m * mean.compensation(metal) * metal;
       r.bias = (1.0f - m) * mean.compensation(coat) + m * mean.compensation(metal);
+      if (!material.normal_texture) continue;
+      const float c =
+          std::clamp(glm::dot(scene::mappedNormal(scene, hit), scene::shadingNormal(scene, hit)), 0.0f, 1.0f);
+      const float kept = 0.5f * (1.0f + c);
+      r.diffuse *= kept, r.scale *= kept, r.bias *= kept;
+      r.direct = c / kept;
     }
   });
   return result;

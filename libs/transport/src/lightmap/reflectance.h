@@ -16,6 +16,7 @@ namespace relume::transport {
 /// reflector: the energy is right, the direction of what glossy lobes send out is not.
 struct Reflectance {
   Vec3 diffuse{0.0f}, scale{0.0f}, bias{0.0f};
+  float direct = 1.0f;         ///< factor more for light straight from emitters: see reflectances()
   std::uint8_t roughness = 0;  ///< index for GlossTable
   bool glossy() const { return scale != Vec3(0.0f) || bias != Vec3(0.0f); }
 };
@@ -37,7 +38,9 @@ class GlossTable {
   std::vector<ggx::Reflected> values_;
 };
 
-/// By point. kLambert: the diffuse albedo alone. Gloss by one look at a texel's middle.
+/// By point. kLambert: the diffuse albedo alone. Gloss and normal map by one look at a texel's middle. A
+/// normal map costs light: turned by an angle of cosine c, its normal gets (1 + c) / 2 of what the surface
+/// gets from all around, and of light from one side, whichever, c on the average.
 std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Texels& texels,
                                       Materials materials);
 
