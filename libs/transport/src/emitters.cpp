@@ -274,9 +274,7 @@ bool Emitters::has(Reach reach) const {
   return reach == Reach::kLocal ? !impl_->tree->empty() : impl_->distantCount() > 0;
 }
 
-bool Emitters::emits(std::uint32_t instance) const {
-  return impl_->first_triangle[instance] != scene::kNone;
-}
+bool Emitters::emits(std::uint32_t instance) const { return impl_->first_triangle[instance] != scene::kNone; }
 bool Emitters::seenBesideSurfaces() const {
   const auto sized = [](const Sun& sun) { return !sun.delta(); };
   return !impl_->disks.empty() || !impl_->scene.environment.dark() ||
