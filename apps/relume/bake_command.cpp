@@ -11,6 +11,7 @@
 
 #include "command.h"
 #include "files.h"
+#include "lights.h"
 #include "relume/bake/bake.h"
 #include "relume/bake/registry.h"
 #include "relume/core/file.h"
@@ -26,7 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BakeCommandOptions {
-  std::string input, output, quality = "medium", cache, max_memory, isa, stats, report, progress = "auto";
+  std::string input, output, lights, bounces, quality = "medium", cache, max_memory, isa, stats, report,
+                                              progress = "auto";
   std::vector<std::string> layers;
   int atlas_size = atlas::AtlasOptions{}.page_size;
   int gutter = atlas::AtlasOptions{}.gutter;
@@ -48,6 +50,14 @@ fs::path cacheFolder(const BakeCommandOptions& options) {
 bake::BakeOptions toLibrary(const BakeCommandOptions& options) {
   bake::BakeOptions result;
   for (const std::string& layer : options.layers) result.layers.push_back(bake::parseLayerSpec(layer));
+  for (bake::LayerSpec& layer : result.layers) {
+    if (options.bounces.empty() || !bake::find(layer.kind).has("bounces")) continue;
+    layer.values.emplace("bounces", options.bounces);
+  }
+  if (!options.lights.empty()) {
+    result.lights = chooseLights(options.lights, {});
+    result.environment = chooseEnvironment(options.lights);
+  }
   result.quality = bake::parseQuality(options.quality);
   result.samples = options.samples;
   result.atlas.page_size = options.atlas_size;
@@ -195,6 +205,9 @@ void addBake(CLI::App& app, Program& program) {
   command->add_option("-o,--output", options->output,
                       "baked .glb; without it, INPUT.baked.glb beside the input");
   command->add_option("--layer", options->layers, layerHelp())->allow_extra_args(false);
+  command->add_option("--lights", options->lights,
+                      "JSON list of lights and an environment; without it, the scene's own lights");
+  command->add_option("--bounces", options->bounces, "of layers that have bounces; inf: all");
   command->add_option("--quality", options->quality, "draft, medium, high or final: the error to reach")
       ->check(CLI::IsMember({"draft", "medium", "high", "final"}))
       ->capture_default_str();

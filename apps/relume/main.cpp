@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   relume::app::addInspect(app, program);
   relume::app::addExport(app, program);
   relume::app::addCompare(app, program);
+  relume::app::addVerify(app, program);
   relume::setReplayCommand(program.command_line);
 
   try {

@@ -2,6 +2,7 @@
 // relume render: a picture of a scene or of a bake.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -19,9 +20,9 @@ namespace relume::app {
 namespace {
 
 using picture::View;
-constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,
-                               View::kAlbedo,     View::kNormal,    View::kBentNormal,
-                               View::kTexels,     View::kCharts,    View::kValidity};
+constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,        View::kLightmap,
+                               View::kAlbedo,     View::kNormal,    View::kBentNormal, View::kTexels,
+                               View::kCharts,     View::kValidity};
 
 struct RenderOptions {
   std::string input, output, mode, view, layer, lights, ambient, background = "0.05", tone = "auto";
@@ -43,6 +44,9 @@ View viewOf(const std::string& text, const Opened& opened) {
   for (const View view : kViews)
     if (text == picture::name(view)) return view;
   if (!opened.asset) return View::kAlbedo;
+  const auto is_lightmap = [](const asset::Layer& layer) { return layer.kind == "lightmap"; };
+  const auto& layers = opened.asset->layers;
+  if (std::any_of(layers.begin(), layers.end(), is_lightmap)) return View::kLightmap;
   return opened.scene.lights.empty() ? View::kObscurance : View::kLit;
 }
 
@@ -57,6 +61,9 @@ picture::Viewpoint viewpointOf(const RenderOptions& options, IVec2 size, const t
   return picture::lookAt(eye, target, glm::radians(options.fov_deg));
 }
 
+/// Shows light that may be as bright as lamps make it.
+bool isLit(View view) { return view == View::kLit || view == View::kLightmap; }
+
 bool isData(View view) {
   return view == View::kNormal || view == View::kBentNormal || view == View::kCharts ||
          view == View::kTexels || view == View::kValidity || view == View::kOcclusion ||
@@ -65,7 +72,7 @@ bool isData(View view) {
 
 // Lamps need a curve that bends bright light; the obscurance of ambient light is between 0 and 1 as it is.
 image::ToneCurve curveOf(const RenderOptions& options, View view) {
-  const bool filmic = options.tone == "filmic" || (options.tone == "auto" && view == View::kLit);
+  const bool filmic = options.tone == "filmic" || (options.tone == "auto" && isLit(view));
   return filmic && !isData(view) ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain;
 }
 
@@ -74,7 +81,7 @@ image::ToneCurve curveOf(const RenderOptions& options, View view) {
 void writePicture(const RenderOptions& options, const image::Image& linear, View view, Vec3 background) {
   if (!options.output.ends_with(".png")) return image::writeImage(options.output, linear);
   float stops = isData(view) ? 0.0f : options.exposure.value_or(0.0f);
-  if (view == View::kLit && !options.exposure) {
+  if (isLit(view) && !options.exposure) {
     stops = chooseExposure(linear, background, !options.mode.empty());
     if (stops != 0.0f) fmt::print("shown with --exposure {:.1f}\n", stops);
   }
@@ -110,7 +117,8 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   picture.lights = chooseLights(options.lights, opened->scene);
   // Without a word, an ambient light that shows the obscurance: alone it makes white surfaces white, beside
   // lamps it is faint.
-  const bool beside_lamps = picture.view == View::kLit && !picture.lights.empty();
+  const bool beside_lamps =
+      picture.view == View::kLightmap || (picture.view == View::kLit && !picture.lights.empty());
   const std::string ambient = !options.ambient.empty() ? options.ambient
                               : beside_lamps           ? "0.3"
                                                        : "3.14159265";
@@ -142,7 +150,9 @@ void addRender(CLI::App& app, Program& program) {
           ->check(CLI::IsMember({"reference", "direct"}));
   command
       ->add_option("--view", options->view,
-                   "what to show; without it, lit where the bake has lights, obscurance where it has none, "
+                   "what to show; without it, lightmap where the bake has one, lit where the scene has "
+                   "lights, obscurance "
+                   "where it has none, "
                    "albedo without a bake")
       ->check(CLI::IsMember(viewNames()))
       ->excludes(mode);

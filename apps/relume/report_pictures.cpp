@@ -36,6 +36,9 @@ std::vector<Shot> shotsFor(const asset::Asset& asset, bool has_lights) {
   if (has_lights && weighted)
     shots.push_back({View::kLit, "lit.png", "The scene's lights, with ambient light weighted by the bake"});
   for (const asset::Layer& layer : asset.layers) {
+    if (layer.kind == "lightmap")
+      shots.push_back({View::kLightmap, "layer-" + layer.name + ".png",
+                       "The light of " + layer.name + " on the surfaces' colours", layer.name});
     if (!weightsAmbientLight(layer)) continue;
     shots.push_back({View::kObscurance, "ambient-" + layer.name + ".png",
                      "Ambient light alone, weighted by " + layer.name, layer.name});
@@ -45,7 +48,7 @@ std::vector<Shot> shotsFor(const asset::Asset& asset, bool has_lights) {
       shots.push_back({View::kBentNormal, "bent-" + layer.name + ".png",
                        "Bent normals of " + layer.name + ": where the open directions point", layer.name});
   }
-  if (weighted)
+  if (!asset.layers.empty())
     shots.push_back({View::kTexels, "texels.png", "Texels of the atlas: even squares mean even density"});
   shots.push_back({View::kCharts, "charts.png", "Charts of the atlas"});
   shots.push_back({View::kValidity, "validity.png",
@@ -153,9 +156,9 @@ std::vector<ReportPicture> drawScene(const fs::path& folder, const fs::path& bak
     options.layer = shot.layer;
     options.lights = opened->scene.lights;
     options.background = Vec3(0.05f);
-    if (shot.view == View::kLit) options.ambient = Irradiance(0.3f);
+    const bool light = shot.view == View::kLit || shot.view == View::kLightmap;
+    if (light) options.ambient = Irradiance(0.3f);
     const image::Image linear = picture::render(tracer, &*opened->asset, viewpoint, options, progress);
-    const bool light = shot.view == View::kLit;
     image::writeImage(folder / shot.file,
                       image::toneMap(linear, light ? image::ToneCurve::kFilmic : image::ToneCurve::kPlain,
                                      light ? chooseExposure(linear, options.background, false) : 0.0f));

@@ -95,14 +95,28 @@ def opacity(g, index):
     return found
 
 
+def reflection(g, index):
+    """How a material reflects and emits as relume's `materials=lambert` has it: factors, and the images that scale them."""
+    m = g["materials"][index] if index is not None else {}
+    pbr, extensions = m.get("pbrMetallicRoughness", {}), m.get("extensions", {})
+    image = lambda texture: g["textures"][texture["index"]].get("source") if texture else None
+    strength = extensions.get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
+    unlit = "KHR_materials_unlit" in extensions
+    return {"base": [0, 0, 0] if unlit else pbr.get("baseColorFactor", [1, 1, 1, 1])[:3], "base_image": image(pbr.get("baseColorTexture")),
+            "metallic": pbr.get("metallicFactor", 1), "metallic_image": image(pbr.get("metallicRoughnessTexture")),
+            "emission": [0 if unlit else strength * x for x in m.get("emissiveFactor", [0, 0, 0])], "emission_image": image(m.get("emissiveTexture")),
+            "double_sided": m.get("doubleSided", False)}
+
+
 def surfaces(glb):
     """The baked triangles in world space, corner by corner (glTF axes): dict of
 
-    corner [3 n, 3], normal [3 n, 3], uv [3 n, 2] (the atlas, v = 0 above), alpha_uv [3 n, 2], material [n] into `opacities`.
+    corner [3 n, 3], normal [3 n, 3], uv [3 n, 2] (the atlas, v = 0 above), alpha_uv [3 n, 2] (of the material's textures), material [n]
+    into `opacities` and `reflections`.
     Triangles without an area are left out.
     """
     g = glb.json
-    parts, opacities, slots, left_out = [], [], {}, 0
+    parts, opacities, reflections, slots, left_out = [], [], [], {}, 0
     for node, world in placed_meshes(g):
         for p in g["meshes"][node["mesh"]]["primitives"]:
             if "RELUME_transfer" not in p.get("extensions", {}):
@@ -112,6 +126,7 @@ def surfaces(glb):
             if material not in slots:
                 slots[material] = len(opacities)
                 opacities.append(opacity(g, material))
+                reflections.append(reflection(g, material))
             position = glb.accessor(attributes["POSITION"]).astype(np.float64)
             index = glb.accessor(p["indices"])[:, 0].astype(np.int64) if "indices" in p else np.arange(len(position))
             index = index.reshape(-1, 3)
@@ -138,7 +153,8 @@ def surfaces(glb):
         print(f"note: {left_out} primitives of dynamic nodes are left out, as they are in the bake")
     corner, normal, uv, alpha_uv, material = (np.concatenate(x) for x in zip(*parts))
     return {"corner": corner.astype(np.float32), "normal": normal.astype(np.float32), "uv": uv.astype(np.float32), "alpha_uv": alpha_uv.astype(np.float32),
-            "material": material, "opacities": opacities}
+            "material": material, "opacities": opacities,
+            "reflections": reflections}
 
 
 def _decompress(data, size):
@@ -165,7 +181,7 @@ def plane(glb, description):
 
 
 def baked(glb, layer="ao"):
-    """value [h, w], covered [h, w], valid [h, w] and chart [h, w] (-1: none) of a one-page bake."""
+    """value [h, w] or [h, w, 3], covered [h, w], valid [h, w] and chart [h, w] (-1: none) of a one-page bake."""
     t = glb.json["extensions"]["RELUME_transfer"]
     atlas = t["atlas"]
     if atlas["pages"] != 1:
@@ -173,7 +189,8 @@ def baked(glb, layer="ao"):
     shape = atlas["height"], atlas["width"]
     table = {p["name"]: plane(glb, p) for p in atlas["planes"] if p["name"] in ("texel", "valid", "chart")}
     found = next(x for x in t["layers"] if x["name"] == layer)
-    value = plane(glb, next(p for p in found["planes"] if p["name"] == "value")).astype(np.float64).reshape(shape)
+    value = plane(glb, next(p for p in found["planes"] if p["name"] == "value")).astype(np.float64)
+    value = value.reshape(shape if value.shape[1] == 1 else shape + (-1,))
     texel = table["texel"][:, 0]
     covered, valid, chart = np.zeros(shape, bool), np.zeros(shape, bool), np.full(shape, -1, np.int64)
     covered.flat[texel], valid.flat[texel], chart.flat[texel] = True, table["valid"][:, 0] != 0, table["chart"][:, 0]

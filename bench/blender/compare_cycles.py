@@ -94,7 +94,7 @@ class Cycles:
     def __init__(self, options, folder, glb):
         self.options, self.folder = options, folder
         surfaces = baked_glb.surfaces(glb)
-        opacities = surfaces.pop("opacities")
+        opacities, _ = surfaces.pop("opacities"), surfaces.pop("reflections")
         np.savez(folder / "surfaces.npz", **surfaces)
         (folder / "opacities.json").write_text(json.dumps(opacities))
         for o in opacities:

@@ -87,7 +87,7 @@ def build_material(number, opacity, folder):
     return material
 
 
-def settings(job):
+def settings(job, world=True):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
@@ -100,14 +100,16 @@ def settings(job):
     cycles.light_sampling_threshold = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.max_bounces, cycles.transparent_max_bounces = 0, 64
     scene.render.threads_mode = "AUTO"
+    if not world:
+        return
     world = bpy.data.worlds.get("world") or bpy.data.worlds.new("world")
     scene.world = world
     world.light_settings.ao_factor = 1
     world.light_settings.distance = job["distance"]
 
 
-def bake(placed, job):
-    """(texels, seconds, CPU seconds of all threads) of the fastest of the repeats; row 0 is v = 0."""
+def bake(placed, job, kind="AO"):
+    """([h, w] of AO, else [h, w, 3]; seconds, CPU seconds of all threads) of the fastest of the repeats; row 0 is v = 0."""
     width, height = job["size"]
     image = bpy.data.images.new("bake", width, height, alpha=True, float_buffer=True)
     image.colorspace_settings.name = "Non-Color"
@@ -123,7 +125,7 @@ def bake(placed, job):
     for _ in range(job.get("repeat", 1)):
         image.pixels.foreach_set(np.zeros(width * height * 4, np.float32))
         start, cpu = time.perf_counter(), time.process_time()
-        done = bpy.ops.object.bake(type="AO", margin=0, use_clear=False, target="IMAGE_TEXTURES", save_mode="INTERNAL", uv_layer="atlas")
+        done = bpy.ops.object.bake(type=kind, margin=0, use_clear=False, target="IMAGE_TEXTURES", save_mode="INTERNAL", uv_layer="atlas")
         best = min(best, (time.perf_counter() - start, time.process_time() - cpu))
         if done != {"FINISHED"}:
             raise RuntimeError("Blender refused to bake")
@@ -133,7 +135,9 @@ def bake(placed, job):
     for material in placed.data.materials:
         material.node_tree.nodes.remove(material.node_tree.nodes["target"])
     bpy.data.images.remove(image)
-    return np.where(pixels[..., 3] > 0, pixels[..., 0], np.nan).astype(np.float32), *best
+    found = pixels[..., 0] if kind == "AO" else pixels[..., :3]
+    written = pixels[..., 3] > 0 if kind == "AO" else pixels[..., 3:] > 0
+    return np.where(written, found, np.nan).astype(np.float32), *best
 
 
 def main(folder):

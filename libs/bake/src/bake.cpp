@@ -122,8 +122,11 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
   if (options.report) gatherer.emplace(p, options);
   double tracing_seconds = 0;
   for (const PreparedLayer& prepared_layer : p.layers) {
-    const LayerContext context{
-        .tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
+    const LayerContext context{.tracer = *p.tracer,
+                               .atlas = p.atlas,
+                               .texels = p.texels,
+                               .quality = p.quality,
+                               .seed = options.seed};
     const LayerJob job = prepared_layer.kind->prepare(context, prepared_layer.parameters);
     input.add(job.solver.key);
     TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));

@@ -13,7 +13,6 @@ asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::Sea
   asset::Plane out;
   out.name = plane.name;
   out.channels = plane.channels;
-  out.storage = asset::Storage::kFloat16;
   std::vector<std::uint8_t> covered;
   atlas::scatter(texels, plane.values, plane.channels, valid, out.values, covered);
   plane.values = {};
@@ -23,6 +22,11 @@ asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::Sea
   if (!plane.direction)
     atlas::stitchSeams(seams, plane.channels, out.values, kFidelity,
                        covered);  // a bent normal may turn at a crease
+  // Sunlit or near a lamp an irradiance may be more than half a float can say.
+  constexpr float kLargestHalf = 65504.0f;
+  const auto fits = [](float v) { return std::abs(v) <= kLargestHalf; };
+  out.storage = std::all_of(out.values.begin(), out.values.end(), fits) ? asset::Storage::kFloat16
+                                                                        : asset::Storage::kFloat32;
   if (plane.unit_interval)
     for (float& v : out.values) v = std::clamp(v, 0.0f, 1.0f);
   if (report) report->seams_after = seamError(seams, plane.channels, out.values);

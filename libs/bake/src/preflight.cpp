@@ -46,8 +46,11 @@ Preflight preflight(const scene::gltf::Document& document, const BakeOptions& op
   result.atlas = p.atlas.statistics;
   for (const StageTime& stage : statistics.stages) result.forecast_seconds += stage.seconds;
   for (const PreparedLayer& layer : p.layers) {
-    const LayerContext context{
-        .tracer = *p.tracer, .texels = p.texels, .quality = p.quality, .seed = options.seed};
+    const LayerContext context{.tracer = *p.tracer,
+                               .atlas = p.atlas,
+                               .texels = p.texels,
+                               .quality = p.quality,
+                               .seed = options.seed};
     const LayerJob job = layer.kind->prepare(context, layer.parameters);
     const TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));
     Preflight::Layer plan{

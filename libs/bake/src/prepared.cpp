@@ -8,6 +8,7 @@
 #include <map>
 
 #include "relume/core/memory.h"
+#include "relume/transport/emitters.h"
 #include "scene_digest.h"
 
 namespace relume::bake {
@@ -33,6 +34,20 @@ atlas::AtlasOptions withinMemory(const BakeOptions& options) {
   const std::uint64_t bytes = options.max_memory ? options.max_memory : machineBytes();
   if (bytes) result.most_texels = std::min(result.most_texels, bytes / kBytesPerTexel);
   return result;
+}
+
+/// Normal maps are read only for those who use them.
+bool seesNormalMaps(const LayerSpec& spec) {
+  const auto materials = spec.values.find("materials");
+  return find(spec.kind).has("materials") && (materials == spec.values.end() || materials->second == "full");
+}
+
+/// A scene in which nothing shines gets a white sky: a black bake helps nobody.
+void requireLight(scene::Scene& scene, const std::vector<PreparedLayer>& layers, Warnings& warnings) {
+  const auto needs = [](const PreparedLayer& layer) { return layer.kind->needs_light; };
+  if (std::none_of(layers.begin(), layers.end(), needs) || !transport::Emitters(scene).empty()) return;
+  warnings.push_back({scene.name, "nothing static in it shines", "it is lit by a white sky; give --lights"});
+  scene.environment.radiance = Radiance(1.0f);
 }
 
 void warnOfScale(const scene::Scene& scene, float diagonal, Warnings& warnings) {
@@ -71,7 +86,10 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   for (const LayerSpec& spec : options.layers) find(spec.kind);  // wrong names fail before any work
   {
     Stage stage(progress, "import", 1);
-    p->scene = scene::gltf::import(document, warnings);
+    const bool normal_maps = std::any_of(options.layers.begin(), options.layers.end(), seesNormalMaps);
+    p->scene = scene::gltf::import(document, warnings, {.normal_maps = normal_maps});
+    if (options.lights) p->scene.lights = *options.lights;
+    if (options.environment) p->scene.environment = *options.environment;
   }
   if (p->scene.triangleCount() == 0)
     throw Error(
@@ -80,6 +98,7 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   const float diagonal = p->scene.bounds().diagonal();
   p->layers = resolveLayers(options, diagonal);
   warnOfScale(p->scene, diagonal, warnings);
+  requireLight(p->scene, p->layers, warnings);
   stopwatch.lap("import");
 
   p->atlas = atlas::buildAtlas(p->scene, withinMemory(options), warnings, progress);
@@ -118,7 +137,7 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
 std::uint64_t forecastBytes(const Prepared& p) {
   std::uint64_t most = 0;
   for (const PreparedLayer& layer : p.layers) {
-    const bool rgb = layer.kind->name == "spectral";
+    const bool rgb = layer.kind->name == "spectral" || layer.kind->name == "lightmap";
     const auto bent = layer.parameters.find("bent");
     const bool has_bent = bent != layer.parameters.end() && std::get<bool>(bent->second);
     const std::uint64_t channels = (rgb ? 3 : 1) + (has_bent ? 3 : 0);

@@ -15,8 +15,10 @@ struct Row {
 constexpr std::array<Row, 4> kRows = {{
     {"draft", {.min_samples = 16, .max_samples = 128, .target_error = 0.02f, .filter = true}},
     {"medium", {.min_samples = 32, .max_samples = 512, .target_error = 0.01f, .filter = true}},
-    {"high", {.min_samples = 64, .max_samples = 1024, .target_error = 0.005f, .filter = false}},
-    {"final", {.min_samples = 256, .max_samples = 4096, .target_error = 0.002f, .filter = false}},
+    {"high",
+     {.min_samples = 64, .max_samples = 1024, .target_error = 0.005f, .filter = false, .cache_samples = 32}},
+    {"final",
+     {.min_samples = 256, .max_samples = 4096, .target_error = 0.002f, .filter = false, .cache_samples = 64}},
 }};
 const Row& row(Quality quality) { return kRows[static_cast<std::size_t>(quality)]; }
 }  // namespace

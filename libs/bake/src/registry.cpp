@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
+#include "lightmap_layer.h"
 #include "occlusion_layers.h"
 #include "relume/core/error.h"
 
@@ -61,6 +63,27 @@ std::vector<LayerKind> makeRegistry() {
        .parameters = {distance("metres that part near (coloured) from far (open) surfaces"), kTau, kShape,
                       kBent},
        .prepare = prepareSpectral},
+      {.name = "lightmap",
+       .summary = "irradiance from the scene's own lights, direct and reflected",
+       .emitters = "the scene's lights, emissive surfaces, environment",
+       .transport = "path-traced",
+       .receivers = "texels, RGB irradiance",
+       .codec = "none",
+       .parameters =
+           {{"solver",
+             Type::kChoice,
+             "gather",
+             {"gather", "path"},
+             "path: unbiased random walks, slow, to judge others by"},
+            {"part", Type::kChoice, "total", {"total", "direct", "indirect"}, "which light"},
+            {"bounces", Type::kCount, "inf", {}, "reflections between a light and a texel; inf: all"},
+            {"materials",
+             Type::kChoice,
+             "full",
+             {"full", "lambert"},
+             "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"}},
+       .prepare = prepareLightmap,
+       .needs_light = true},
   };
 }
 
@@ -75,17 +98,30 @@ asset::Parameter parseValue(const ParameterSpec& spec, const std::string& text, 
       throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not known", text),
                   fmt::format("use one of {}", fmt::join(spec.choices, ", ")));
     case Type::kLength:
+    case Type::kCount:
       break;
   }
   double value = 0;
   const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (ec != std::errc() || end != text.data() + text.size() || !(value > 0))
+  const bool number = ec == std::errc() && end == text.data() + text.size();
+  if (spec.type == Type::kCount) {
+    if (!number || !(value >= 0) || (value < kInfinity && value != std::floor(value)))
+      throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not a count", text),
+                  "write a whole number, or inf");
+    return value;
+  }
+  if (!number || !(value > 0))
     throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not a length above zero", text),
                 "write metres, for example 2.5, or inf");
   return value;
 }
 
 }  // namespace
+
+bool LayerKind::has(std::string_view parameter) const {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const ParameterSpec& p) { return p.name == parameter; });
+}
 
 const std::vector<LayerKind>& registry() {
   static const std::vector<LayerKind> rows = makeRegistry();
@@ -110,8 +146,7 @@ float autoDistance(float scene_diagonal) {
 
 Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_diagonal) {
   for (const auto& [key, value] : spec.values) {
-    if (std::none_of(kind.parameters.begin(), kind.parameters.end(),
-                     [&](const ParameterSpec& p) { return p.name == key; })) {
+    if (!kind.has(key)) {
       std::vector<std::string> names;
       for (const ParameterSpec& p : kind.parameters) names.push_back(p.name);
       throw Error(ErrorCode::kUsage, "--layer " + kind.name, fmt::format("has no parameter '{}'", key),
@@ -126,10 +161,8 @@ Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_dia
     result[p.name] = parseValue(p, text, fmt::format("--layer {}:{}", kind.name, p.name));
   }
   // Automatic lengths, in the order in which they depend on one another.
-  result.emplace("distance", static_cast<double>(autoDistance(scene_diagonal)));
-  const bool has_tau = std::any_of(kind.parameters.begin(), kind.parameters.end(),
-                                   [](const ParameterSpec& p) { return p.name == "tau"; });
-  if (has_tau) {
+  if (kind.has("distance")) result.emplace("distance", static_cast<double>(autoDistance(scene_diagonal)));
+  if (kind.has("tau")) {
     const double limit = std::get<double>(result["distance"]);
     result.emplace("tau",
                    limit < kInfinity ? limit / 4 : static_cast<double>(autoDistance(scene_diagonal)) / 4);

@@ -2,7 +2,6 @@
 #include "scene_digest.h"
 
 namespace relume::bake {
-namespace {
 
 void addTexture(Hasher& hasher, const scene::Scene& scene, const scene::TextureRef& use) {
   hasher.add(use.texture != scene::kNone);
@@ -16,6 +15,8 @@ void addTexture(Hasher& hasher, const scene::Scene& scene, const scene::TextureR
         .add(texture.image->channels)
         .addAll(texture.image->data);
 }
+
+namespace {
 
 Digest digestOf(const scene::Scene& scene, const scene::Material& m) {
   Hasher hasher;

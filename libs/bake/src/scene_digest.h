@@ -9,6 +9,9 @@
 
 namespace relume::bake {
 
+/// A material's use of a texture, with its pixels as far as they were read.
+void addTexture(Hasher& hasher, const scene::Scene& scene, const scene::TextureRef& use);
+
 /// Meshes, materials and textures of the static instances and their layout in the atlas; not their
 /// transforms.
 Digest structureDigest(const scene::Scene& scene, const atlas::Atlas& atlas);

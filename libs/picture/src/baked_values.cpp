@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "baked_values.h"
+#include "relume/picture/baked_values.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -32,17 +32,20 @@ const asset::Plane& choosePlane(const asset::Asset& asset, View view, const std:
   }
   const asset::Plane* found = nullptr;
   const bool wants_obscurance = view == View::kObscurance || view == View::kLit;
+  const bool wants_lightmap = view == View::kLightmap, takes_any = view == View::kTexels;
   for (const asset::Layer& layer : asset.layers) {
     const asset::Plane* plane = findPlane(layer, plane_name);
-    if (!plane) continue;
+    // An irradiance is no share of anything, nor the other way round.
+    if (!plane || (!takes_any && wants_lightmap != (layer.kind == "lightmap"))) continue;
     if (!found) found = plane;
     if (!wants_obscurance || isObscurance(layer)) return *plane;
   }
   if (found) return *found;
   throw Error(ErrorCode::kNoSuchLayer, fmt::format("view {}", picture::name(view)),
               fmt::format("no layer of this bake has a plane '{}'", plane_name),
-              plane_name == "bent" ? "bake a layer with bent normals, such as ao:bent=true"
-                                   : "bake ao, obscurance or spectral");
+              wants_lightmap         ? "bake a lightmap"
+              : plane_name == "bent" ? "bake a layer with bent normals, such as ao:bent=true"
+                                     : "bake ao, obscurance or spectral");
 }
 
 void requireMatch(const scene::Scene& scene, const asset::AtlasTable& atlas) {

@@ -13,11 +13,11 @@
 #include <span>
 #include <vector>
 
-#include "baked_values.h"
 #include "layered_tracer.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
+#include "relume/picture/baked_values.h"
 #include "relume/picture/picture.h"
 #include "relume/picture/primary_rays.h"
 #include "shader.h"
@@ -150,6 +150,8 @@ const char* name(View view) {
       return "occlusion";
     case View::kLit:
       return "lit";
+    case View::kLightmap:
+      return "lightmap";
     case View::kAlbedo:
       return "albedo";
     case View::kNormal:

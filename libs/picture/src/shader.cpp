@@ -2,6 +2,7 @@
 // The views. With k = albedo / pi, W the baked value and E the direct irradiance of visible lights:
 //   obscurance   L = k I_A W + emission                                              ([IKSZ03] eq. 4)
 //   lit          L = k ((I_A + beta sum_j E_j) W + E) + emission                     ([IKSZ03] eq. 5)
+//   lightmap     L = k E + emission, E the baked irradiance
 // where E_j counts every light, turned or hidden or not (eq. 7), and k_A = k_D = k.
 // Beyond the paper: metals have no diffuse albedo and would be black, so for display they reflect all light
 // as if diffusely: k is base colour / pi everywhere, which is albedo / pi where nothing is metallic. That is
@@ -53,7 +54,11 @@ Vec3 Shader::lit(const ShadingPoint& point, const Receiver& receiver, Irradiance
   if (scene.materials[scene.meshes[instance.mesh].material].unlit) return base + surface.emission.rgb;
 
   Irradiance ambient = options_.ambient;
-  if (const auto place = baked_.locate(point.where)) {
+  const auto place = baked_.locate(point.where);
+  if (options_.view == View::kLightmap) {
+    direct = place ? Irradiance(baked_.value(*place)) : ambient;
+    ambient = Irradiance(0.0f);
+  } else if (place) {
     if (options_.view == View::kLit)
       ambient += options_.beta * unoccludedIrradiance(options_.lights, receiver.position);
     ambient = Irradiance(ambient.rgb * baked_.value(*place));
@@ -93,6 +98,7 @@ Vec3 Shader::data(const ShadingPoint& point, const Receiver& receiver) const {
     }
     case View::kObscurance:
     case View::kLit:
+    case View::kLightmap:
       break;
   }
   RELUME_CHECK(false);
@@ -121,7 +127,8 @@ void Shader::shade(std::span<const ShadingPoint> points, std::span<Vec3> colours
   if (options_.view == View::kLit)
     directIrradiance(tracer_, options_.lights, std::span(receivers).first(points.size()),
                      std::span(direct).first(points.size()));
-  const bool lights = options_.view == View::kLit || options_.view == View::kObscurance;
+  const bool lights =
+      options_.view == View::kLit || options_.view == View::kObscurance || options_.view == View::kLightmap;
   for (std::size_t i = 0; i < points.size(); ++i)
     colours[i] = lights ? lit(points[i], receivers[i], direct[i]) : data(points[i], receivers[i]);
 }

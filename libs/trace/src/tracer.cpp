@@ -64,8 +64,7 @@ bool toEmbree(const RayPacket& packet, RTCRay16& rays, int (&valid)[kLanes]) {
   return any != 0;
 }
 
-bool isBackFace(const InstanceTraits& traits, Vec3 normal, Direction direction) {
-  if (traits.double_sided) return false;
+bool isBehind(const InstanceTraits& traits, Vec3 normal, Direction direction) {
   const Vec3 d = traits.referenced ? traits.local_from_world * direction : direction;
   return (glm::dot(normal, d) > 0.0f) != traits.mirrored;
 }
@@ -94,9 +93,10 @@ RayHit Tracer::intersect(const Ray& ray, std::uint32_t alpha_seed) const {
   const unsigned int referenced = query.hit.instID[0];
   const unsigned int instance = referenced != RTC_INVALID_GEOMETRY_ID ? referenced : query.hit.geomID;
   const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  const InstanceTraits& traits = impl_->accel.traits()[instance];
   return {{instance, query.hit.primID, query.hit.u, query.hit.v},
           query.ray.tfar,
-          isBackFace(impl_->accel.traits()[instance], normal, ray.direction)};
+          !traits.double_sided && isBehind(traits, normal, ray.direction)};
 }
 
 bool Tracer::occluded(const Ray& ray, std::uint32_t alpha_seed) const {
@@ -115,7 +115,7 @@ void Tracer::intersectPacket(const RayPacket& rays, HitPacket& hits) const {
   std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
   if (any) embree::intersect16(valid, impl_->accel.root(), query, embree::Coherence::kSorted);
 
-  std::uint32_t hit = 0, back = 0;
+  std::uint32_t hit = 0, behind = 0, double_sided = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {
     hits.t[i] = query.ray.tfar[i];
     hits.b1[i] = query.hit.u[i], hits.b2[i] = query.hit.v[i];
@@ -127,19 +127,22 @@ void Tracer::intersectPacket(const RayPacket& rays, HitPacket& hits) const {
     hit |= static_cast<std::uint32_t>(query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) << i;
     const float cosine = query.hit.Ng_x[i] * rays.direction_x[i] + query.hit.Ng_y[i] * rays.direction_y[i] +
                          query.hit.Ng_z[i] * rays.direction_z[i];
-    back |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
+    behind |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
   }
   if (impl_->accel.needsTraits()) {
-    back = 0;
+    behind = 0;
     for (std::uint32_t rest = hit; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(__builtin_ctz(rest));
       const Vec3 normal(query.hit.Ng_x[i], query.hit.Ng_y[i], query.hit.Ng_z[i]);
       const Direction d(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
-      back |= static_cast<std::uint32_t>(isBackFace(impl_->accel.traits()[hits.instance[i]], normal, d)) << i;
+      const InstanceTraits& traits = impl_->accel.traits()[hits.instance[i]];
+      behind |= static_cast<std::uint32_t>(isBehind(traits, normal, d)) << i;
+      double_sided |= static_cast<std::uint32_t>(traits.double_sided) << i;
     }
   }
   hits.hit = hit;
-  hits.back_face = back & hit;
+  hits.behind = behind & hit;
+  hits.back_face = hits.behind & ~double_sided;
 }
 
 std::uint32_t Tracer::occludedPacket(const RayPacket& rays) const {

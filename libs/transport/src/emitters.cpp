@@ -274,6 +274,13 @@ bool Emitters::has(Reach reach) const {
   return reach == Reach::kLocal ? !impl_->tree->empty() : impl_->distantCount() > 0;
 }
 
+bool Emitters::emits(std::uint32_t instance) const { return impl_->first_triangle[instance] != scene::kNone; }
+bool Emitters::seenBesideSurfaces() const {
+  const auto sized = [](const Sun& sun) { return !sun.delta(); };
+  return !impl_->disks.empty() || !impl_->scene.environment.dark() ||
+         std::any_of(impl_->suns.begin(), impl_->suns.end(), sized);
+}
+
 LightSample Emitters::sample(Reach reach, Point p, Normal n, Vec2 u, float choice) const {
   LightSample s;
   if (reach == Reach::kLocal) {

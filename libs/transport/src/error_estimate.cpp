@@ -111,4 +111,9 @@ float standardErrorOf(float variance, std::uint32_t kept, std::uint32_t n) {
   return std::min(1.0f, std::sqrt(kNet * kNet * variance / (k * k) + unseen * unseen));
 }
 
+float radianceStandardError(float variance, std::uint32_t n, float typical) {
+  const float count = static_cast<float>(n), unseen = kUnseen * typical;
+  return std::sqrt(kNet * kNet * variance + unseen * unseen) / count;
+}
+
 }  // namespace relume::transport

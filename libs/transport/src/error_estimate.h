@@ -20,4 +20,7 @@ void addNetVariances(std::span<const float> values, std::span<const float, 16> m
 /// The standard error of the mean of `kept` values out of n, whose sum has this estimated variance.
 float standardErrorOf(float variance, std::uint32_t kept, std::uint32_t n);
 
+/// The same of a mean of n values of any size, whose mean is about `typical`.
+float radianceStandardError(float variance, std::uint32_t n, float typical);
+
 }  // namespace relume::transport

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "relume/core/check.h"
@@ -20,42 +21,74 @@ namespace {
 // error of all texels from 3.4 to 3.7 %.
 constexpr float kFoldCosine = 0.97f;
 
+// Texels, both ways, that share a turn.
+constexpr std::uint32_t kTurnSide = 64;
+
 }  // namespace
 
 GroupRays::GroupRays(const scene::Scene& scene, const atlas::Texels& texels, const SampleTable& samples,
-                     std::uint64_t seed, float limit)
-    : scene_(scene), texels_(texels), samples_(samples), seed_(seed), limit_(limit) {}
+                     std::uint64_t seed, float limit, Alignment alignment)
+    : scene_(scene), texels_(texels), samples_(samples), seed_(seed), limit_(limit), alignment_(alignment) {}
 
-void GroupRays::begin(std::span<const std::uint32_t> group) {
+void GroupRays::begin(std::span<const std::uint32_t> group, Side side) {
   RELUME_CHECK_LE(group.size(), sources_.size());
-  for (std::size_t i = 0; i < group.size(); ++i) prepare(texels_.points[group[i]], sources_[i]);
+  const float sign = side == Side::kFront ? 1.0f : -1.0f;
+  if (alignment_ == Alignment::kTurned && !group.empty()) turn(texels_.points[group[0]]);
+  for (std::size_t i = 0; i < group.size(); ++i) prepare(texels_.points[group[i]], sign, sources_[i]);
 }
 
-void GroupRays::prepare(const atlas::SurfacePoint& point, Source& source) const {
+void GroupRays::turn(const atlas::SurfacePoint& point) {
+  const auto width = static_cast<std::uint32_t>(texels_.width);
+  const std::uint32_t x = point.texel % width, y = point.texel / width;
+  const std::uint32_t patch =
+      hashCombine(streamOf(seed_, point.chart, 3), y / kTurnSide * width + x / kTurnSide);
+  turn_ = Turn(patch);
+  shift_ = {static_cast<float>(patch >> 16) * 0x1p-16f, static_cast<float>(patch & 0xffffu) * 0x1p-16f};
+}
+
+void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& source) const {
   const auto width = static_cast<std::uint32_t>(texels_.width),
              height = static_cast<std::uint32_t>(texels_.height);
   const std::uint32_t x = point.texel % width, y = point.texel / width % height;
   source.column = y % kGroupSide * kGroupSide + x % kGroupSide;
   source.alpha_stream = streamOf(seed_, point.texel, 2);
-  source.frame = RayFrame(point.shading_normal, point.geometric_normal);
-  source.centre = trace::offsetOrigin(point.position, point.geometric_normal);
+  const Normal own = side * point.geometric_normal;
+  source.frame = RayFrame(side * point.shading_normal, own);
+  source.frame.shading = turn_(source.frame.shading);
+  source.centre = trace::offsetOrigin(point.position, own);
   source.dp_dx = point.dp_dx, source.dp_dy = point.dp_dy;
   source.place_count =
       std::min<std::uint32_t>(point.sample_count, static_cast<std::uint32_t>(source.places.size()));
-  Normal normal = point.geometric_normal;
+  Normal normal = own;
   Frame frame = source.frame.shading;
   std::uint32_t triangle = point.triangle;
   for (std::uint32_t i = 0; i < source.place_count; ++i) {
     const atlas::SubSample& sample = texels_.samples[point.first_sample + i];
     if (sample.triangle != triangle) {  // places come triangle by triangle
       triangle = sample.triangle;
-      normal = scene::geometricNormal(scene_, point.instance, triangle);
-      if (normal == Normal(0)) normal = point.geometric_normal;  // a sliver
-      const bool folded = glm::dot(normal, point.geometric_normal) < kFoldCosine;
-      frame = folded ? Frame::about(normal) : source.frame.shading;
+      normal = side * scene::geometricNormal(scene_, point.instance, triangle);
+      if (normal == Normal(0)) normal = own;  // a sliver
+      const bool folded = glm::dot(normal, own) < kFoldCosine;
+      frame = folded ? turn_(Frame::about(normal)) : source.frame.shading;
     }
     source.places[i] = {trace::offsetOrigin(sample.position, normal), normal, frame};
   }
+}
+
+GroupRays::Spot GroupRays::spot(std::uint32_t texel, Vec2 u) const {
+  const Source& s = sources_[texel];
+  if (s.place_count == 0)
+    return {s.centre + ((u.x - 0.5f) * s.dp_dx + (u.y - 0.5f) * s.dp_dy), s.frame.geometric,
+            s.frame.shading.n};
+  const Place& place = s.place(u.x);
+  return {place.origin, place.geometric_normal, place.shading.n};
+}
+
+GroupRays::Normals GroupRays::normals(std::uint32_t first, std::uint32_t lane) const {
+  const Source& s = sources_[texel_[lane]];
+  if (s.place_count == 0) return {s.frame.geometric, s.frame.shading.n};
+  const Place& place = s.place(samples_.u[first * SampleTable::kColumns + lanes_.at[lane]]);
+  return {place.geometric_normal, place.shading.n};
 }
 
 void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most_samples) {
@@ -125,8 +158,7 @@ void GroupRays::packet(std::uint32_t first, trace::RayPacket& packet) const {
   for (const std::uint32_t i : uneven_) {
     const Source& s = sources_[texel_[i]];
     const std::uint32_t at = l.at[i];
-    const auto k = static_cast<std::uint32_t>(us[at] * static_cast<float>(s.place_count));
-    const Place& place = s.places[std::min(k, s.place_count - 1)];
+    const Place& place = s.place(us[at]);
     const Direction d = place.shading.toWorld({xs[at], ys[at], zs[at]});
     packet.direction_x[i] = d.x, packet.direction_y[i] = d.y, packet.direction_z[i] = d.z;
     packet.origin_x[i] = place.origin.x, packet.origin_y[i] = place.origin.y,

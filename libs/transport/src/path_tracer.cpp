@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "power_heuristic.h"
+
 namespace relume::transport {
 namespace {
 
@@ -11,13 +13,6 @@ constexpr int kFirstRoulette = 3;       // bounces before paths may end by chanc
 constexpr float kMostSurvival = 0.95f;  // so that a path ends even between perfect mirrors
 constexpr int kMostPasses = 64;         // panes of glass along one ray
 constexpr float kShortOfLight = 1.0f - 1e-5f;
-
-/// [Veach97] (9.13), exponent 2.
-float powerHeuristic(float own, float other) {
-  // By the ratio, which squares of large densities would not survive.
-  const float ratio = other / own;
-  return 1 / (1 + ratio * ratio);
-}
 
 float largest(Vec3 v) { return std::max({v.x, v.y, v.z}); }
 

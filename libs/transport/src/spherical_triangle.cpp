@@ -9,7 +9,7 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
-constexpr double kLeastSolidAngle = 1e-5, kMostSolidAngle = 6.0;  // sr
+constexpr double kLeastSolidAngle = 1e-2, kMostSolidAngle = 6.0;  // sr
 
 double angleBetween(DVec3 a, DVec3 b) {
   const double half = 0.5 * glm::length(glm::dot(a, b) < 0 ? a + b : b - a);

@@ -9,9 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <tuple>
 
-#include "made_scenes.h"
+#include "made_rooms.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
@@ -39,55 +38,6 @@ void expectE(const ReferenceIrradiance& result, std::size_t i, glm::dvec3 expect
         << what << " point " << i << " channel " << c;
 }
 
-/// A box seen from within: six faces, each its own material.
-void addRoomFace(scene::Scene& scene, Vec3 albedo, Point p, Vec3 e1, Vec3 e2, Vec3 emission = Vec3(0)) {
-  made::addMaterial(scene, albedo).emission = emission;
-  scene::Mesh mesh;
-  made::addQuad(mesh, p, e1, e2);
-  made::addInstance(scene, std::move(mesh), static_cast<std::uint32_t>(scene.materials.size()) - 1);
-}
-
-scene::Scene box(Vec3 size, Vec3 albedo, Vec3 emission) {
-  scene::Scene scene;
-  const Vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
-  for (const auto& [p, e1, e2] :
-       {std::tuple{Point(0), y, z}, std::tuple{Point(x), z, y}, std::tuple{Point(0), z, x},
-        std::tuple{Point(y), x, z}, std::tuple{Point(0), x, y}, std::tuple{Point(z), y, x}})
-    addRoomFace(scene, albedo, p, e1, e2, emission);
-  return scene;
-}
-
-/// The 2 m room: red and green walls at x = 0 and 2, a lamp in the ceiling, perhaps a block.
-scene::Scene colouredRoom(bool block) {
-  scene::Scene scene;
-  const Vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2), white(0.725f, 0.71f, 0.68f);
-  addRoomFace(scene, {0.63f, 0.065f, 0.05f}, Point(0), y, z);
-  addRoomFace(scene, {0.14f, 0.45f, 0.09f}, x, z, y);
-  addRoomFace(scene, white, Point(0), z, x);
-  addRoomFace(scene, white, y, x, z);
-  addRoomFace(scene, white, Point(0), x, y);
-  // The ceiling around the lamp.
-  const auto ceiling = [&](float x0, float x1, float y0, float y1, Vec3 albedo, Vec3 emission) {
-    addRoomFace(scene, albedo, {x0, y0, 2}, {0, y1 - y0, 0}, {x1 - x0, 0, 0}, emission);
-  };
-  ceiling(0, 2, 0, 0.75f, white, Vec3(0)), ceiling(0, 2, 1.25f, 2, white, Vec3(0));
-  ceiling(0, 0.75f, 0.75f, 1.25f, white, Vec3(0)), ceiling(1.25f, 2, 0.75f, 1.25f, white, Vec3(0));
-  ceiling(0.75f, 1.25f, 0.75f, 1.25f, Vec3(0), {17, 12, 4});
-  if (block) {
-    made::addMaterial(scene, white);
-    scene::Mesh mesh;
-    made::addBox(mesh, {0.35f, 1.0f, 0}, {0.95f, 1.6f, 1.2f});
-    made::addInstance(scene, std::move(mesh), static_cast<std::uint32_t>(scene.materials.size()) - 1);
-  }
-  return scene;
-}
-
-scene::Scene floor(float z = -1) {
-  scene::Mesh mesh;
-  made::addQuad(mesh, {-50, -50, z}, {100, 0, 0}, {0, 100, 0});
-  return made::sceneOf(std::move(mesh));
-}
-
 trace::Ray along(Point from, Point to) { return {from, glm::normalize(to - from)}; }
 
 /// Mean radiance of one ray, as a 4 x 4 picture all of whose pixels are that ray, and its standard error.
@@ -111,7 +61,7 @@ Seen look(const scene::Scene& scene, trace::Ray ray, ReferenceOptions options) {
 }
 
 TEST(Reference, APointLightIsExact) {
-  scene::Scene scene = floor();
+  scene::Scene scene = made::floor();
   Light& light = scene.lights.emplace_back();
   light.position = {1, 1.5f, 2}, light.intensity = 50;
   ReferenceOptions options{.samples = 16, .max_bounces = 0};
@@ -121,8 +71,8 @@ TEST(Reference, APointLightIsExact) {
 }
 
 TEST(Reference, LambertsFormulaWithAndWithoutAShade) {
-  scene::Scene scene = floor();
-  addRoomFace(scene, Vec3(0), {-0.5f, -0.5f, 2}, {0, 1, 0}, {1, 0, 0}, Vec3(12));
+  scene::Scene scene = made::floor();
+  made::addRoomFace(scene, Vec3(0), {-0.5f, -0.5f, 2}, {0, 1, 0}, {1, 0, 0}, Vec3(12));
   const std::vector<Receiver> points = {receiver({0, 0, 0}, {0, 0, 1}), receiver({1.5f, 0.3f, 0}, {0, 0, 1}),
                                         receiver({0.2f, -2.5f, 0}, {0, 0, 1}),
                                         receiver({0, 0, 1.7f}, {0, 0, 1})};
@@ -138,14 +88,14 @@ TEST(Reference, LambertsFormulaWithAndWithoutAShade) {
     }
   }
   // A half-plane at height 0.8 that ends at x = 0.03: 1.1690964628341654.
-  addRoomFace(scene, Vec3(0), {-200, -200, 0.8f}, {200.03f, 0, 0}, {0, 400, 0});
+  made::addRoomFace(scene, Vec3(0), {-200, -200, 0.8f}, {200.03f, 0, 0}, {0, 400, 0});
   const auto shaded = solve(scene, {points[0]}, {.samples = 16384, .part = Part::kDirect});
   expectE(shaded, 0, glm::dvec3(1.1690964628341654), 2e-4);
 }
 
 TEST(Reference, AFurnaceAndItsBounces) {
   // Exitance 2, reflectance 0.75: E = B = 2 / (1 - 0.75) = 8; after k bounces 8 (1 - 0.75^(k + 1)).
-  const scene::Scene scene = box({4, 3, 2.5f}, Vec3(0.75f), Vec3(2 / kPi));
+  const scene::Scene scene = made::box({4, 3, 2.5f}, Vec3(0.75f), Vec3(2 / kPi));
   const std::vector<Receiver> points = {receiver({1, 1, 0}, {0, 0, 1}),
                                         receiver({4, 0.2f, 2.3f}, {-1, 0, 0})};
   for (const int bounces : {0, 1, 2, 7, ReferenceOptions::kUnlimited}) {
@@ -156,32 +106,9 @@ TEST(Reference, AFurnaceAndItsBounces) {
   }
 }
 
-/// The inside of a sphere of `radius` without the part within `cap` radians of +z.
-scene::Scene cavity(float radius, float cap, Vec3 albedo) {
-  constexpr std::uint32_t kRows = 96, kColumns = 192;
-  scene::Mesh mesh;
-  for (std::uint32_t i = 0; i <= kRows; ++i)
-    for (std::uint32_t j = 0; j <= kColumns; ++j) {
-      const double theta = cap + (M_PI - cap) * i / kRows, phi = 2 * M_PI * (j % kColumns) / kColumns;
-      mesh.positions.push_back(
-          radius * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
-    }
-  for (std::uint32_t i = 0; i < kRows; ++i)
-    for (std::uint32_t j = 0; j < kColumns; ++j) {
-      const std::uint32_t a = i * (kColumns + 1) + j, b = a + kColumns + 1;
-      if (i + 1 < kRows) mesh.triangles.emplace_back(a, b + 1, b);
-      if (i > 0 || cap > 0) mesh.triangles.emplace_back(a, a + 1, b + 1);
-    }
-  mesh.flat_normals = true;
-  mesh.normals.assign(mesh.positions.size(), Normal(0, 0, 1));
-  scene::Scene scene = made::sceneOf(std::move(mesh));
-  scene.materials[0].base_colour = Vec4(albedo, 1);
-  return scene;
-}
-
 TEST(Reference, AnIntegratingSphere) {
   // Direct by the inverse square; bounce k gives rho^k I / R^2 everywhere: 1.5, 0.9 ..., together 3.75.
-  scene::Scene scene = cavity(2, 0, Vec3(0.6f));
+  scene::Scene scene = made::cavity(2, 0, Vec3(0.6f));
   Light& light = scene.lights.emplace_back();
   light.position = {0.5f, 0, 0.8f}, light.intensity = 10;
   const std::vector<Receiver> points = {receiver({1.999f, 0, 0}, {-1, 0, 0})};
@@ -195,7 +122,7 @@ TEST(Reference, AnIntegratingSphere) {
 
 TEST(Reference, ACavityUnderASky) {
   // Open to the share f = 0.3 of its sphere: E = pi f / (1 - rho (1 - f)) everywhere.
-  scene::Scene scene = cavity(1, std::acos(0.4f), {0.8f, 0.5f, 0.2f});
+  scene::Scene scene = made::cavity(1, std::acos(0.4f), {0.8f, 0.5f, 0.2f});
   scene.environment.radiance = Radiance(1.0f);
   const float t = 2.5f;
   const Vec3 d(std::sin(t), 0, std::cos(t));
@@ -227,7 +154,7 @@ TEST(Reference, TheColouredRoomAgreesWithRadiosity) {
        {0.58701426, 0.41436301, 0.13812100},
        {1.45483491, 0.90399898, 0.25304562}},
       {receiver({0.3f, 1, 2}, {0, 0, -1}), {0, 0, 0}, {1.00965678, 0.41351443, 0.10331405}}};
-  const scene::Scene room = colouredRoom(false);
+  const scene::Scene room = made::colouredRoom(false);
   std::vector<Receiver> points;
   for (const Case& c : cases) points.push_back(c.at);
   ReferenceOptions options{.samples = 8192, .materials = Materials::kLambert};
@@ -245,7 +172,7 @@ TEST(Reference, TheColouredRoomAgreesWithRadiosity) {
 }
 
 TEST(Reference, TheRoomWithABlockAgreesWithAnotherPathTracer) {
-  const auto e = solve(colouredRoom(true),
+  const auto e = solve(made::colouredRoom(true),
                        {receiver({1.3f, 0.9f, 0}, {0, 0, 1}), receiver({0.2f, 1.3f, 0}, {0, 0, 1}),
                         receiver({0.6f, 2, 0.6f}, {0, -1, 0}), receiver({0.65f, 1.3f, 1.2f}, {0, 0, 1})},
                        {.samples = 16384, .materials = Materials::kLambert});
@@ -256,7 +183,7 @@ TEST(Reference, TheRoomWithABlockAgreesWithAnotherPathTracer) {
 }
 
 TEST(Reference, EstimatorsAgreeOnGlossySurfaces) {
-  scene::Scene scene = colouredRoom(true);
+  scene::Scene scene = made::colouredRoom(true);
   for (scene::Material& m : scene.materials) m.roughness = 0.6f;
   scene.materials.back().metallic = 1, scene.materials.back().roughness = 0.4f;
   scene.materials[4].roughness = 0.3f;
@@ -278,7 +205,7 @@ TEST(Reference, EstimatorsAgreeOnGlossySurfaces) {
 
 TEST(Reference, AWhiteMetalUnderAWhiteSkyCannotBeSeen) {
   for (const float roughness : {0.0f, 0.15f, 0.5f, 1.0f}) {
-    scene::Scene scene = floor(0);
+    scene::Scene scene = made::floor(0);
     scene.materials[0].metallic = 1, scene.materials[0].roughness = roughness;
     scene.environment.radiance = Radiance(1.0f);
     for (const Point eye : {Point(0, 0, 3), Point(4, 0, 1)}) {
@@ -291,7 +218,7 @@ TEST(Reference, AWhiteMetalUnderAWhiteSkyCannotBeSeen) {
 TEST(Reference, ARoomOfMirrorsKeepsItsEnergy) {
   // Walls of white metal, one of which emits: no light is lost, so every bounce adds as much as the first on
   // the whole; limited to k bounces the mean of E over the walls is k + 1 times the direct one.
-  scene::Scene scene = box(Vec3(2), Vec3(1), Vec3(0));
+  scene::Scene scene = made::box(Vec3(2), Vec3(1), Vec3(0));
   for (scene::Material& m : scene.materials) m.metallic = 1, m.roughness = 0.3f;
   scene.materials[5].emission = Vec3(1);
   std::vector<Receiver> points;
@@ -318,12 +245,12 @@ TEST(Reference, ARoomOfMirrorsKeepsItsEnergy) {
 }
 
 TEST(Reference, PanesTintAndDim) {
-  scene::Scene scene = floor(-1);
+  scene::Scene scene = made::floor(-1);
   Light& light = scene.lights.emplace_back();
   light.position = {0.4f, 0.2f, 2}, light.intensity = 8;
   const std::vector<Receiver> points = {receiver({0.4f, 0.2f, 0}, {0, 0, 1})};
   const std::size_t pane = scene.materials.size();
-  addRoomFace(scene, {0.5f, 1, 1}, {-9, -9, 1}, {18, 0, 0}, {0, 18, 0});
+  made::addRoomFace(scene, {0.5f, 1, 1}, {-9, -9, 1}, {18, 0, 0}, {0, 18, 0});
   scene.materials[pane].transmission = 0.75f, scene.materials[pane].roughness = 0.2f;
   ReferenceOptions options{.samples = 256, .part = Part::kDirect};
   scene::Surface glass;
@@ -351,7 +278,7 @@ TEST(Reference, PanesTintAndDim) {
 }
 
 TEST(Reference, LampsWithoutABodyAreSeenAndMirrored) {
-  scene::Scene scene = floor(0);
+  scene::Scene scene = made::floor(0);
   scene.materials[0].metallic = 1, scene.materials[0].roughness = 0;
   Light& lamp = scene.lights.emplace_back();
   lamp.kind = Light::Kind::kArea, lamp.area = 1, lamp.intensity = 5;
@@ -364,14 +291,14 @@ TEST(Reference, LampsWithoutABodyAreSeenAndMirrored) {
 }
 
 TEST(Reference, UnlitShowsItsColourToTheEyeAlone) {
-  scene::Scene scene = floor(0);
+  scene::Scene scene = made::floor(0);
   scene.materials[0].unlit = true, scene.materials[0].base_colour = {0.2f, 0.4f, 0.6f, 1};
   EXPECT_NEAR(look(scene, along({0, 0, 1}, {0, 0, 0}), {.samples = 4}).mean.g, 0.4, 1e-6);
   EXPECT_EQ(solve(scene, {receiver({0, 0, 1}, {0, 0, -1})}, {.samples = 64}).value[0].rgb, Vec3(0));
 }
 
 TEST(Reference, BackgroundIsSeenButDoesNotShine) {
-  scene::Scene scene = floor(0);
+  scene::Scene scene = made::floor(0);
   const ReferenceOptions options{.samples = 16, .background = {0.1f, 0.2f, 0.3f}};
   EXPECT_NEAR(look(scene, along({0, 0, 1}, {0, 0, 2}), options).mean.b, 0.3, 1e-6);
   EXPECT_EQ(look(scene, along({0, 0, 1}, {0, 0, 0}), options).mean.b, 0);
@@ -380,7 +307,7 @@ TEST(Reference, BackgroundIsSeenButDoesNotShine) {
 TEST(Reference, ItsErrorBarsHold) {
   // 256 estimates of one value by 64 paths each: the mean square of (value - truth) / error has the
   // expectation 15 / 13 and a standard error of about 0.11.
-  const scene::Scene room = colouredRoom(true);
+  const scene::Scene room = made::colouredRoom(true);
   const std::vector<Receiver> points(256, receiver({1.3f, 0.9f, 0}, {0, 0, 1}));
   const auto e = solve(room, points, {.samples = 64, .materials = Materials::kLambert});
   double sum = 0;
@@ -392,7 +319,7 @@ TEST(Reference, ItsErrorBarsHold) {
 }
 
 TEST(Reference, ATargetErrorIsReached) {
-  const scene::Scene room = colouredRoom(true);
+  const scene::Scene room = made::colouredRoom(true);
   const std::vector<Receiver> points = {receiver({1.3f, 0.9f, 0}, {0, 0, 1}),
                                         receiver({0.65f, 1.3f, 1.2f}, {0, 0, 1})};
   const auto e = solve(room, points, {.samples = 1 << 16, .target_error = 0.02f});
@@ -402,7 +329,7 @@ TEST(Reference, ATargetErrorIsReached) {
 }
 
 TEST(Reference, BitsDoNotDependOnThreads) {
-  const scene::Scene room = colouredRoom(true);
+  const scene::Scene room = made::colouredRoom(true);
   SilentProgress silent;
   const Reference reference(room);
   const auto render = [&](int threads) {
@@ -423,7 +350,7 @@ TEST(Reference, BitsDoNotDependOnThreads) {
 TEST(Reference, CanBeInterrupted) {
   SilentProgress progress;
   progress.cancel();
-  const scene::Scene scene = floor(0);
+  const scene::Scene scene = made::floor(0);
   const std::vector<Receiver> points(4, receiver({0, 0, 1}, {0, 0, 1}));
   EXPECT_THROW(Reference(scene).irradiance(points, {}, progress), Error);
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,9 @@
 #include "relume/bake/report.h"
 #include "relume/bake/statistics.h"
 #include "relume/core/error.h"
+#include "relume/core/light.h"
 #include "relume/core/progress.h"
+#include "relume/scene/environment.h"
 #include "relume/scene/gltf.h"
 
 namespace relume::bake {
@@ -25,6 +28,8 @@ struct BakeOptions {
   std::uint32_t samples =
       0;  ///< rays per texel, exactly (rounded up to a power of two); 0: as the quality says
   atlas::AtlasOptions atlas;
+  std::optional<LightSet> lights;  ///< instead of the document's
+  std::optional<scene::Environment> environment;
   std::uint64_t seed = 1;
   std::string isa;               ///< see trace::TracerOptions
   std::filesystem::path cache;   ///< folder for finished and interrupted work; empty: none

@@ -19,7 +19,7 @@
 namespace relume::bake {
 
 struct ParameterSpec {
-  enum class Type : std::uint8_t { kLength, kChoice, kFlag };
+  enum class Type : std::uint8_t { kLength, kChoice, kFlag, kCount };
   std::string name;
   Type type = Type::kLength;
   std::string
@@ -31,6 +31,7 @@ struct ParameterSpec {
 /// What a row may use to compute its texels.
 struct LayerContext {
   const trace::Tracer& tracer;
+  const atlas::Atlas& atlas;
   const atlas::Texels& texels;
   QualitySettings quality;
   std::uint64_t seed = 1;
@@ -74,6 +75,9 @@ struct LayerKind {
   std::string emitters, transport, receivers, codec;
   std::vector<ParameterSpec> parameters;
   LayerJob (*prepare)(const LayerContext&, const Parameters&) = nullptr;
+  bool needs_light = false;  ///< of the scene's own lights and environment
+
+  bool has(std::string_view parameter) const;
 };
 
 const std::vector<LayerKind>& registry();

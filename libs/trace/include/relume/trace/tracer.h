@@ -47,6 +47,8 @@ struct alignas(64) HitPacket {
   float b1[RayPacket::kSize], b2[RayPacket::kSize];
   std::uint32_t instance[RayPacket::kSize], triangle[RayPacket::kSize];
   std::uint32_t hit = 0, back_face = 0;  ///< bit i: lane i
+  /// The surface was met on the side its normal points away from, whatever its material says of sides.
+  std::uint32_t behind = 0;
   scene::Hit where(std::size_t lane) const { return {instance[lane], triangle[lane], b1[lane], b2[lane]}; }
 };
 

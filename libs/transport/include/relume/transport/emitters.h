@@ -60,6 +60,10 @@ class Emitters {
   /// Whether there are emitters of that kind.
   bool has(Reach reach) const;
 
+  /// Whether rays that hit this instance may see light there; whether rays may see light elsewhere (onRay).
+  bool emits(std::uint32_t instance) const;
+  bool seenBesideSurfaces() const;
+
   /// Light of one kind at p from the side of n (unit; zero: from all around). u, choice in [0, 1). Visibility
   /// is left to the caller. All light is the sum of both kinds.
   LightSample sample(Reach reach, Point p, Normal n, Vec2 u, float choice) const;

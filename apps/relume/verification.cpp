@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// With two independent truths T1, T2 at every place the mean of (B - T1)(B - T2) is the squared error of B:
+// their noise has no part in it. Standard errors are those of means over places.
+#include "verification.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "relume/core/error.h"
+#include "relume/core/quantity.h"
+#include "relume/core/sampling.h"
+#include "relume/picture/baked_values.h"
+#include "relume/transport/reference.h"
+
+namespace relume::app {
+namespace {
+
+constexpr std::size_t kWorst = 10;
+constexpr double kBeyondNoise = 4;  // standard errors
+
+struct Place {
+  scene::Hit hit;
+  double baked = 0;
+};
+
+const asset::Layer& layerOf(const asset::Asset& asset, const std::string& name) {
+  if (name.empty())
+    for (const asset::Layer& layer : asset.layers)
+      if (layer.kind == "lightmap") return layer;
+  if (const asset::Layer* layer = name.empty() ? nullptr : &asset.layer(name);
+      layer && layer->kind == "lightmap")
+    return *layer;
+  throw Error(ErrorCode::kNoSuchLayer, name.empty() ? "the bake" : "layer " + name,
+              name.empty() ? "has no lightmap" : "is no lightmap", "bake --layer lightmap");
+}
+
+/// Places with equal shares of the baked area.
+class SurfaceSampler {
+ public:
+  explicit SurfaceSampler(const scene::Scene& scene) : scene_(scene) {
+    double area = 0;
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+      const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+      if (scene.instances[i].dynamic || mesh.atlas_page == scene::kNone) continue;
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Point a = corner(i, t, 0, 0), b = corner(i, t, 1, 0), c = corner(i, t, 0, 1);
+        area += 0.5 * static_cast<double>(glm::length(glm::cross(b - a, c - a)));
+        triangles_.push_back({i, t});
+        until_.push_back(area);
+      }
+    }
+  }
+  bool empty() const { return until_.empty() || !(until_.back() > 0); }
+  /// share, u in [0, 1).
+  scene::Hit at(double share, Vec2 u) const {
+    const auto found = std::upper_bound(until_.begin(), until_.end(), share * until_.back());
+    const auto k = std::min(static_cast<std::size_t>(found - until_.begin()), until_.size() - 1);
+    const float root = std::sqrt(u.x);
+    return {triangles_[k].instance, triangles_[k].triangle, root * (1 - u.y), root * u.y};
+  }
+
+ private:
+  Point corner(std::uint32_t instance, std::uint32_t triangle, float b1, float b2) const {
+    return scene::worldPosition(scene_, {instance, triangle, b1, b2});
+  }
+  struct Triangle {
+    std::uint32_t instance, triangle;
+  };
+  const scene::Scene& scene_;
+  std::vector<Triangle> triangles_;
+  std::vector<double> until_;  // area up to and with each
+};
+
+transport::ReferenceOptions truthOf(const asset::Layer& layer, const VerifyOptions& options) {
+  const auto word = [&](const char* key) {
+    const auto found = layer.parameters.find(key);
+    return found == layer.parameters.end() ? std::string() : std::get<std::string>(found->second);
+  };
+  transport::ReferenceOptions truth;
+  truth.samples = std::max(options.samples / 2, 16u);
+  truth.materials =
+      word("materials") == "lambert" ? transport::Materials::kLambert : transport::Materials::kFull;
+  truth.part = word("part") == "direct"     ? transport::Part::kDirect
+               : word("part") == "indirect" ? transport::Part::kIndirect
+                                            : transport::Part::kTotal;
+  if (const auto found = layer.parameters.find("bounces"); found != layer.parameters.end())
+    if (const double bounces = std::get<double>(found->second); bounces < 1e6)
+      truth.max_bounces = static_cast<int>(bounces);
+  truth.seed = options.seed;
+  return truth;
+}
+
+/// Another surface lies in the same plane: what is true there depends on which of the two is asked.
+bool coincides(const trace::Tracer& tracer, const scene::Hit& own, float diagonal) {
+  const scene::Scene& scene = tracer.scene();
+  const Point p = scene::worldPosition(scene, own);
+  const Normal n = scene::geometricNormal(scene, own.instance, own.triangle);
+  const float near = 3e-5f * diagonal;
+  trace::Ray ray{p + near * n, -n, 2 * near};
+  for (int layer = 0; layer < 4; ++layer) {
+    const trace::RayHit hit = tracer.intersect(ray);
+    if (!hit) return false;
+    if (hit.where.instance != own.instance || hit.where.triangle != own.triangle) return true;
+    ray.origin = trace::offsetOrigin(p, -n);
+    ray.t_max = near;
+  }
+  return false;
+}
+
+std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::BakedValues& baked,
+                                const VerifyOptions& options, std::size_t& skipped) {
+  const scene::Scene& scene = tracer.scene();
+  const float diagonal = scene.bounds().diagonal();
+  const SurfaceSampler surface(scene);
+  std::vector<Place> places;
+  if (surface.empty()) return places;
+  for (std::uint32_t k = 0; k < options.points; ++k) {
+    const std::uint32_t stream = streamOf(options.seed, 0, 0);
+    const double share = (k + static_cast<double>(sobol2(k, stream).x)) / options.points;
+    const scene::Hit hit = surface.at(share, sobol2(k, stream + 1));
+    const auto place = baked.locate(hit);
+    const auto index = place ? baked.tableIndex(*place) : std::nullopt;
+    if (!index || !baked.table().valid[*index] || scene::opacityAt(scene, hit) < 0.5f ||
+        scene::geometricNormal(scene, hit.instance, hit.triangle) == Normal(0) ||
+        coincides(tracer, hit, diagonal)) {
+      ++skipped;
+      continue;
+    }
+    places.push_back({hit, static_cast<double>(luminance(baked.value(*place)))});
+  }
+  return places;
+}
+
+}  // namespace
+
+Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset,
+                            const VerifyOptions& options, Progress& progress) {
+  const asset::Layer& layer = layerOf(asset, options.layer);
+  const picture::BakedValues baked(scene, &asset, picture::View::kLightmap, layer.name);
+  Verification result;
+  result.layer = layer.name, result.error_estimate = layer.error_estimate;
+  const transport::Reference reference(scene);
+  const std::vector<Place> places = choosePlaces(reference.tracer(), baked, options, result.skipped);
+  if (places.empty()) throw Error(ErrorCode::kEmptyScene, scene.name, "no baked surface was found to verify");
+  result.points = places.size();
+
+  std::vector<transport::Receiver> receivers;
+  for (const Place& place : places)
+    receivers.push_back({scene::worldPosition(scene, place.hit),
+                         scene::geometricNormal(scene, place.hit.instance, place.hit.triangle),
+                         scene::shadingNormal(scene, place.hit)});
+  transport::ReferenceOptions truth = truthOf(layer, options);
+  const auto first = reference.irradiance(receivers, truth, progress);
+  truth.seed += 0x5851f42d4c957f2du;
+  const auto second = reference.irradiance(receivers, truth, progress);
+  result.paths = first.samples + second.samples;
+
+  const auto n = static_cast<double>(places.size());
+  std::vector<double> truths(places.size()), noises(places.size()), products(places.size());
+  double noise2 = 0, product_sum = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto t1 = static_cast<double>(luminance(first.value[i].rgb)),
+               t2 = static_cast<double>(luminance(second.value[i].rgb));
+    truths[i] = 0.5 * (t1 + t2), noises[i] = 0.5 * std::abs(t1 - t2);
+    products[i] = (places[i].baked - t1) * (places[i].baked - t2);
+    result.mean_baked += places[i].baked / n, result.mean_true += truths[i] / n;
+    noise2 += noises[i] * noises[i] / n, product_sum += products[i] / n;
+  }
+  if (!(result.mean_true > 0))
+    throw Error(ErrorCode::kEmptyScene, scene.name, "no light reaches the baked surfaces",
+                "give the --lights that it was baked with");
+  double spread = 0, difference2 = 0;
+  const double difference = result.mean_baked - result.mean_true;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    spread += (products[i] - product_sum) * (products[i] - product_sum) / (n * n);
+    const double d = places[i].baked - truths[i] - difference;
+    difference2 += d * d / (n * n);
+  }
+  result.bias = result.mean_baked / result.mean_true - 1;
+  result.truth_noise = std::sqrt(noise2) / result.mean_true;
+  result.bias_error = std::sqrt(difference2) / result.mean_true;
+  result.rmse = std::sqrt(std::max(product_sum, 0.0)) / result.mean_true;
+  result.rmse_error =
+      std::sqrt(spread) / (2 * std::max(result.rmse, 1e-9) * result.mean_true * result.mean_true);
+
+  std::vector<std::size_t> order;
+  const double typical = std::sqrt(noise2);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (std::abs(places[i].baked - truths[i]) > kBeyondNoise * std::max(noises[i], typical))
+      order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(places[a].baked - truths[a]) > std::abs(places[b].baked - truths[b]);
+  });
+  if (order.size() > kWorst) order.resize(kWorst);
+  for (const std::size_t i : order)
+    result.worst.push_back({scene.instances[places[i].hit.instance].name, receivers[i].position,
+                            places[i].baked, truths[i], noises[i]});
+  return result;
+}
+
+}  // namespace relume::app

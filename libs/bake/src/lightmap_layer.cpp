@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "lightmap_layer.h"
+
+#include "relume/core/check.h"
+#include "relume/transport/lightmap.h"
+#include "relume/transport/occlusion.h"
+#include "scene_digest.h"
+
+namespace relume::bake {
+namespace {
+
+using transport::LightmapOptions;
+
+// As for occlusion: a texel of which so many rays meet the back of a face lies inside geometry.
+constexpr float kBuriedShare = 0.25f;
+
+// The row of a texel.
+constexpr std::size_t kErrorAt = 3, kBackAt = 4, kRow = 5;
+
+LightmapOptions optionsOf(const LayerContext& context, const Parameters& parameters) {
+  const std::string& part = std::get<std::string>(parameters.at("part"));
+  const double bounces = std::get<double>(parameters.at("bounces"));
+  LightmapOptions options;
+  if (std::get<std::string>(parameters.at("solver")) == "path")
+    options.method = transport::LightmapMethod::kPath;
+  options.part = part == "direct"     ? transport::Part::kDirect
+                 : part == "indirect" ? transport::Part::kIndirect
+                                      : transport::Part::kTotal;
+  options.materials = std::get<std::string>(parameters.at("materials")) == "lambert"
+                          ? transport::Materials::kLambert
+                          : transport::Materials::kFull;
+  options.max_bounces = bounces < 1e6 ? static_cast<int>(bounces) : transport::ReferenceOptions::kUnlimited;
+  options.min_samples = context.quality.min_samples, options.max_samples = context.quality.max_samples;
+  options.target_error = context.quality.target_error;
+  options.smoothed = context.quality.filter;
+  options.cache_samples = context.quality.cache_samples;
+  options.seed = context.seed;
+  return options;
+}
+
+void addLights(const scene::Scene& scene, Hasher& hasher) {
+  hasher.add(scene.lights.size());
+  for (const Light& l : scene.lights)
+    hasher.add(l.kind)
+        .add(l.colour)
+        .add(l.intensity)
+        .add(l.range)
+        .add(l.inner_cone)
+        .add(l.outer_cone)
+        .add(l.position)
+        .add(l.direction)
+        .add(l.area)
+        .add(l.angular_radius);
+  const scene::Environment& e = scene.environment;
+  hasher.add(e.radiance.rgb).add(e.rotation).add(e.map != nullptr);
+  if (e.map) hasher.add(e.map->width).add(e.map->height).add(e.map->channels).addAll(e.map->data);
+}
+
+Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
+  Hasher hasher;
+  hasher
+      .add("lightmap 1")  // raise when the solver's results change
+      .add(o.method)
+      .add(o.part)
+      .add(o.materials)
+      .add(o.max_bounces)
+      .add(o.min_samples)
+      .add(o.max_samples)
+      .add(o.target_error)
+      .add(o.smoothed)
+      .add(o.cache_samples)
+      .add(o.seed);
+  addLights(scene, hasher);
+  for (const scene::Material& m : scene.materials) {
+    hasher.add(m.normal_scale);
+    addTexture(hasher, scene, m.normal_texture);
+  }
+  return hasher.digest();
+}
+
+PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const float> rows) {
+  const std::size_t points = texels.points.size();
+  RELUME_CHECK_EQ(rows.size(), points * kRow);
+  PointLayer layer;
+  PointPlane value{.name = "value", .channels = 3, .values = std::vector<float>(points * 3)};
+  layer.error.resize(points), layer.valid.resize(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const float* row = rows.data() + i * kRow;
+    std::copy_n(row, 3, &value.values[i * 3]);
+    layer.error[i] = row[kErrorAt];
+    layer.valid[i] = row[kBackAt] <= kBuriedShare;
+  }
+  if (filter) {
+    std::vector<float> left(points);
+    transport::filterTexels(texels, layer.error, layer.valid, 3, value.values, left);
+    layer.error = std::move(left);
+  }
+  layer.planes.push_back(std::move(value));
+  return layer;
+}
+
+}  // namespace
+
+LayerJob prepareLightmap(const LayerContext& context, const Parameters& parameters) {
+  const LightmapOptions options = optionsOf(context, parameters);
+  LayerJob job;
+  job.solver.row = static_cast<int>(kRow);
+  job.solver.key = keyOf(options, context.tracer.scene());
+  const auto solver =
+      std::make_shared<transport::LightmapSolver>(context.tracer, context.atlas, context.texels, options);
+  job.solver.solve = [solver](std::span<const std::uint32_t> which, std::span<float> rows,
+                              Progress& progress) {
+    if (which.empty()) return std::uint64_t{0};
+    const transport::LightmapResult result = solver->solve(progress, which);
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      float* row = rows.data() + i * kRow;
+      for (int c = 0; c < 3; ++c) row[c] = result.value[i].rgb[c];
+      row[kErrorAt] = result.error[i];
+      row[kBackAt] = result.back_share[i];
+    }
+    return result.rays;
+  };
+  const atlas::Texels& texels = context.texels;
+  const bool filter = context.quality.filter;
+  job.finish = [&texels, filter](std::span<const float> rows) { return finishRows(texels, filter, rows); };
+  return job;
+}
+
+}  // namespace relume::bake

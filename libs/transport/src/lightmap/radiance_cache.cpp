@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "lightmap/radiance_cache.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "lightmap/light_rays.h"
+#include "lightmap/reflectance.h"
+#include "lightmap/substitutes.h"
+#include "relume/core/parallel.h"
+
+namespace relume::transport {
+namespace {
+
+// A texel of which so many rays meet the back of a face is inside something, in part at least.
+constexpr float kBuriedShare = 0.25f;
+// Light is handed on until what is still to come is this share of all light.
+constexpr double kConverged = 1e-4;
+constexpr int kMostBounces = 4096;
+
+double sumOf(std::span<const Vec4> values) {
+  double sum = 0;
+  for (const Vec4& v : values) sum += static_cast<double>(v.x + v.y + v.z);
+  return sum;
+}
+
+}  // namespace
+
+struct RadianceCache::Builder {
+  /// What was found from one side of the surfaces.
+  struct Found {
+    std::vector<Vec3> direct;       // E, by entry
+    std::vector<Vec3> glossy;       // of that, what glossy lobes reflect
+    std::vector<SideOfTexel> ends;  // [entry][gather_samples]
+    std::vector<Reflectance> reflectance;
+    std::vector<std::uint8_t> column;  // of the sample table
+
+    std::size_t size() const { return reflectance.size(); }
+    void resize(std::size_t entries, std::uint32_t samples) {
+      direct.resize(entries), glossy.resize(entries), column.resize(entries);
+      ends.resize(entries * samples, kNoTexel);
+    }
+  };
+
+  Builder(RadianceCache& the_cache, const trace::Tracer& the_tracer, const Emitters& the_emitters,
+          const TexelLookup& the_lookup, const atlas::Texels& the_texels, const TexelGroups& the_groups,
+          const CacheOptions& the_options, Progress& the_progress)
+      : cache(the_cache),
+        tracer(the_tracer),
+        emitters(the_emitters),
+        lookup(the_lookup),
+        texels(the_texels),
+        groups(the_groups),
+        options(the_options),
+        progress(the_progress),
+        directions(options.gather_samples, options.gather_samples, options.seed, BlockSamples::kShared),
+        lights(options.light_samples, options.light_samples, options.seed, BlockSamples::kShared),
+        gloss(options.materials == Materials::kFull ? directions.z : std::vector<float>()) {}
+
+  void build() {
+    const std::size_t points = texels.points.size();
+    front.reflectance = reflectances(tracer.scene(), texels, options.materials);
+    cache.back_share_.resize(points);
+    front.resize(points, options.gather_samples);
+    wanted.assign(points, 0);
+    gatherFronts();
+    std::vector<std::uint8_t> buried(points);
+    for (std::size_t i = 0; i < points; ++i) buried[i] = cache.back_share_[i] > kBuriedShare;
+    gatherBacks();
+    nothing = static_cast<std::uint32_t>(points + back.size());
+    std::replace(cache.back_of_.begin(), cache.back_of_.end(), scene::kNone, nothing);
+    const std::vector<std::uint32_t> substitute = substitutes(texels, buried);
+    place(front, substitute), place(back, substitute);
+    handOn();
+    for (std::size_t i = 0; i < points; ++i) cache.radiance_[i] = now[substitute[i]];
+    for (std::size_t i = points; i < now.size(); ++i) cache.radiance_[i] = now[i];
+  }
+
+ private:
+  /// Solves the group for one side: row i of the found is slots[i].
+  struct Worker {
+    explicit Worker(const Builder& b)
+        : rays(b.tracer.scene(), b.texels, b.directions, b.options.seed, kInfinity, Alignment::kTurned),
+          gatherer(b.tracer, b.lookup, b.emitters),
+          light_rays(b.tracer, b.emitters, b.lights, false) {}
+    GroupRays rays;
+    Gatherer gatherer;
+    LightRays light_rays;
+    std::vector<std::uint32_t> active;
+  };
+
+  void gatherGroup(Worker& w, std::span<const std::uint32_t> group, Side side,
+                   std::span<const std::uint32_t> slots, Found& found) {
+    const std::uint32_t n = options.gather_samples;
+    w.rays.begin(group, side);
+    w.active.resize(group.size());
+    for (std::uint32_t i = 0; i < group.size(); ++i) w.active[i] = i;
+    for (std::uint32_t i = 0; i < group.size(); ++i)
+      found.column[slots[i]] = static_cast<std::uint8_t>(w.rays.columnOf(i));
+    const float light_share = 1.0f / static_cast<float>(options.light_samples);
+    const auto arrived = [&](std::uint32_t slot, Vec3 irradiance, ggx::Reflected gloss_share) {
+      const Reflectance& r = found.reflectance[slot];
+      found.direct[slot] += irradiance;
+      found.glossy[slot] += r.direct * irradiance * (r.scale * gloss_share.scale + r.bias * gloss_share.bias);
+    };
+    w.light_rays.trace(w.rays, w.active, 0, options.light_samples,
+                       [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float cosine) {
+                         const Reflectance& r = found.reflectance[slots[texel]];
+                         arrived(slots[texel], irradiance * light_share,
+                                 r.glossy() ? ggx::reflected(cosine, GlossTable::alphaOf(r.roughness))
+                                            : ggx::Reflected{0, 0});
+                       });
+    std::array<std::uint32_t, kGroupTexels> met_back{};
+    w.rays.select(w.active, n);
+    const float ray_share = kPi / static_cast<float>(n);
+    w.gatherer.trace(w.rays, 0, n, [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
+      const std::uint32_t slot = slots[texel];
+      if (arrival.emitted != Vec3(0.0f))
+        arrived(slot, arrival.emitted * ray_share, glossOf(found, slot, sample));
+      found.ends[std::size_t{slot} * n + sample] = arrival.surface;
+      met_back[texel] += arrival.surface != kNoTexel && (arrival.surface & kBackBit) != 0;
+    });
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      const float share = static_cast<float>(met_back[i]) / static_cast<float>(n);
+      if (side == Side::kFront) cache.back_share_[group[i]] = share;
+      // What is inside a body sees backs that nobody else does; no light finds it either.
+      if (met_back[i] > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
+        want(slots[i], found);
+    }
+  }
+
+  /// Marks the backs that an entry's rays have met.
+  void want(std::size_t slot, const Found& found) {
+    for (std::uint32_t s = 0; s < options.gather_samples; ++s) {
+      const SideOfTexel end = found.ends[slot * options.gather_samples + s];
+      if (end == kNoTexel || (end & kBackBit) == 0) continue;
+      std::atomic_ref<std::uint8_t>(wanted[end & ~kBackBit]).store(1, std::memory_order_relaxed);
+    }
+  }
+
+  void gatherFronts() {
+    const Stage stage(progress, "bounces", texels.points.size());
+    std::vector<std::uint64_t> rays(groups.tiles());
+    parallelFor(groups.tiles(), 4, [&](std::size_t begin, std::size_t end) {
+      Worker worker(*this);
+      for (std::size_t tile = begin; tile < end; ++tile) {
+        const std::uint64_t before = worker.gatherer.rays() + worker.light_rays.rays();
+        groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
+          if (progress.cancelled()) return;
+          gatherGroup(worker, group, Side::kFront, group, front);
+          progress.advance(group.size());
+        });
+        rays[tile] = worker.gatherer.rays() + worker.light_rays.rays() - before;
+      }
+    });
+    progress.throwIfCancelled();
+    for (const std::uint64_t r : rays) cache.rays_ += r;
+  }
+
+  /// Backs that rays have met, then those that the rays from these meet, until there are no new ones.
+  void gatherBacks() {
+    if (std::find(wanted.begin(), wanted.end(), 1) == wanted.end()) return;
+    const auto points = static_cast<std::uint32_t>(texels.points.size());
+    cache.back_of_.assign(points, scene::kNone);
+    for (;;) {
+      struct Block {
+        std::vector<std::uint32_t> points, slots;
+      };
+      std::vector<Block> blocks;
+      auto next = static_cast<std::uint32_t>(back.size());
+      for (std::size_t tile = 0; tile < groups.tiles(); ++tile) {
+        groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
+          const auto is_wanted = [&](std::uint32_t i) { return wanted[i] != 0; };
+          if (cache.back_of_[group[0]] != scene::kNone || std::none_of(group.begin(), group.end(), is_wanted))
+            return;
+          Block block{{group.begin(), group.end()}, {}};
+          for (const std::uint32_t i : group) {
+            block.slots.push_back(next);
+            cache.back_of_[i] = points + next++;
+            back.reflectance.push_back(front.reflectance[i]);
+          }
+          blocks.push_back(std::move(block));
+        });
+      }
+      if (blocks.empty()) return;
+      back.resize(next, options.gather_samples);
+      std::vector<std::uint64_t> rays(blocks.size());
+      parallelFor(
+          blocks.size(), 64,
+          [&](std::size_t begin, std::size_t end) {
+            Worker worker(*this);
+            for (std::size_t b = begin; b < end; ++b) {
+              const std::uint64_t before = worker.gatherer.rays() + worker.light_rays.rays();
+              gatherGroup(worker, blocks[b].points, Side::kBack, blocks[b].slots, back);
+              rays[b] = worker.gatherer.rays() + worker.light_rays.rays() - before;
+            }
+          },
+          &progress);
+      for (const std::uint64_t r : rays) cache.rays_ += r;
+    }
+  }
+
+  /// How glossy lobes weigh the light of a gather sample.
+  ggx::Reflected glossOf(const Found& found, std::size_t entry, std::uint32_t sample) const {
+    const Reflectance& r = found.reflectance[entry];
+    if (!r.glossy()) return {0, 0};
+    return gloss.at(r.roughness, std::size_t{sample} * SampleTable::kColumns + found.column[entry]);
+  }
+
+  /// Ends of rays become places in `now`.
+  void place(Found& found, const std::vector<std::uint32_t>& substitute) const {
+    parallelFor(found.ends.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SideOfTexel surface = found.ends[i];
+        if ((surface & kBackBit) == 0) {
+          found.ends[i] = substitute[surface];
+        } else {
+          const bool known = surface != kNoTexel && !cache.back_of_.empty();
+          found.ends[i] = known ? cache.back_of_[surface & ~kBackBit] : nothing;
+        }
+      }
+    });
+  }
+
+  /// Light of the bounce before that an entry's rays find; what then leaves the entry.
+  Vec4 reflect(const Found& found, std::size_t entry, Vec3* indirect) const {
+    const std::uint32_t n = options.gather_samples;
+    const Reflectance& r = found.reflectance[entry];
+    const std::uint32_t* end = &found.ends[entry * n];
+    Vec4 sum(0.0f), glossy(0.0f);
+    if (!r.glossy()) {
+      for (std::uint32_t s = 0; s < n; ++s) sum += now[end[s]];
+    } else {
+      Vec4 scaled(0.0f), biased(0.0f);
+      for (std::uint32_t s = 0; s < n; ++s) {
+        const Vec4 radiance = now[end[s]];
+        const ggx::Reflected share = glossOf(found, entry, s);
+        sum += radiance, scaled += radiance * share.scale, biased += radiance * share.bias;
+      }
+      glossy = Vec4(r.scale, 0) * scaled + Vec4(r.bias, 0) * biased;
+    }
+    const float per_ray = kPi / static_cast<float>(n);
+    if (indirect) *indirect = Vec3(sum) * per_ray;
+    return kInvPi * (Vec4(r.diffuse, 0) * (Vec4(r.direct * found.direct[entry], 0) + per_ray * sum) +
+                     Vec4(found.glossy[entry], 0) + per_ray * glossy);
+  }
+
+  /// Calls body(found, entry, place in `now`) for all entries.
+  template <class Body>
+  void forEachEntry(const Body& body) const {
+    const std::size_t fronts = front.size();
+    parallelFor(fronts + back.size(), 2048, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) i < fronts ? body(front, i, i) : body(back, i - fronts, i);
+    });
+  }
+
+  void handOn() {
+    now.assign(front.size() + back.size() + 1, Vec4(0.0f));
+    std::vector<Vec4> next(now.size(), Vec4(0.0f));
+    cache.indirect_.assign(front.size(), Vec3(0.0f));
+    cache.radiance_.assign(now.size(), Vec3(0.0f));
+    forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
+      const Reflectance& r = found.reflectance[entry];
+      now[place] = Vec4(kInvPi * (r.diffuse * r.direct * found.direct[entry] + found.glossy[entry]), 0);
+    });
+    const int most = options.bounces < 0 ? kMostBounces : options.bounces;
+    double total = sumOf(now), change = total;
+    for (int k = 0; k < most && total > 0; ++k) {
+      forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
+        next[place] = reflect(found, entry, &found == &front ? &cache.indirect_[entry] : nullptr);
+      });
+      now.swap(next);
+      const double sum = sumOf(now), step = sum - total;
+      // Each bounce adds less than the last by about the same ratio.
+      const double ratio = change > 0 ? std::min(step / change, 0.999) : 0;
+      total = sum, change = step;
+      if (step * ratio / (1 - ratio) < kConverged * total) break;
+      progress.throwIfCancelled();
+    }
+    cache.direct_ = std::move(front.direct);
+  }
+
+  RadianceCache& cache;
+  const trace::Tracer& tracer;
+  const Emitters& emitters;
+  const TexelLookup& lookup;
+  const atlas::Texels& texels;
+  const TexelGroups& groups;
+  const CacheOptions& options;
+  Progress& progress;
+  const SampleTable directions;
+  const LightTable lights;
+  const GlossTable gloss;
+  Found front, back;
+  std::uint32_t nothing = 0;         // place in `now` that stays dark
+  std::vector<Vec4> now;             // radiance: fronts, backs, nothing; four wide for vector code
+  std::vector<std::uint8_t> wanted;  // by point: its back is
+};
+
+RadianceCache::RadianceCache(const trace::Tracer& tracer, const Emitters& emitters, const TexelLookup& lookup,
+                             const atlas::Texels& texels, const TexelGroups& groups,
+                             const CacheOptions& options, Progress& progress) {
+  Builder(*this, tracer, emitters, lookup, texels, groups, options, progress).build();
+}
+
+}  // namespace relume::transport

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Lightmaps against closed forms, against the reference, and against themselves. Expected values: see
+// reference_test.cpp, which has the same scenes. Means over surfaces are compared where a form is the same
+// all over; elsewhere the texels about a point, whose mean is the point's value to second order.
+#include "relume/transport/lightmap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "made_rooms.h"
+#include "relume/core/parallel.h"
+#include "relume/transport/occlusion.h"
+
+namespace relume::transport {
+namespace {
+
+/// A scene with its atlas, and lightmaps of it.
+struct Lit {
+  explicit Lit(scene::Scene the_scene, int page_size = 64) : scene(std::move(the_scene)), tracer(scene) {
+    Warnings warnings;
+    SilentProgress silent;
+    atlas = atlas::buildAtlas(scene, {.page_size = page_size}, warnings, silent);
+    texels = atlas::rasterize(scene, atlas, silent);
+  }
+  LightmapResult solve(const LightmapOptions& options, std::span<const std::uint32_t> which = {}) const {
+    SilentProgress silent;
+    return LightmapSolver(tracer, atlas, texels, options).solve(silent, which);
+  }
+  /// Area-weighted, of one instance or of all.
+  glm::dvec3 mean(const LightmapResult& result, std::uint32_t instance = scene::kNone) const {
+    glm::dvec3 sum(0);
+    double area = 0;
+    for (std::size_t i = 0; i < texels.points.size(); ++i) {
+      const atlas::SurfacePoint& p = texels.points[i];
+      if (instance != scene::kNone && p.instance != instance) continue;
+      sum += static_cast<double>(p.area) * glm::dvec3(result.value[i].rgb),
+          area += static_cast<double>(p.area);
+    }
+    return sum / area;
+  }
+  /// Mean of the texels that face n and whose middles lie within `radius` of p.
+  glm::dvec3 about(const LightmapResult& result, Point p, Normal n, float radius) const {
+    glm::dvec3 sum(0);
+    int count = 0;
+    for (std::size_t i = 0; i < texels.points.size(); ++i)
+      if (glm::length(texels.points[i].position - p) < radius &&
+          glm::dot(texels.points[i].geometric_normal, n) > 0.99f)
+        sum += glm::dvec3(result.value[i].rgb), ++count;
+    EXPECT_GT(count, 0) << "no texel there";
+    return sum / std::max<double>(count, 1);
+  }
+  scene::Scene scene;
+  trace::Tracer tracer;
+  atlas::Atlas atlas;
+  atlas::Texels texels;
+};
+
+LightmapOptions plain(std::uint32_t samples) {
+  return {.materials = Materials::kLambert, .min_samples = samples, .max_samples = samples};
+}
+
+void expectNear(glm::dvec3 value, glm::dvec3 expected, double relative, const char* what = "") {
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(value[c], expected[c], relative * expected[c]) << what << " channel " << c;
+}
+
+TEST(Lightmap, AFurnaceAndItsBounces) {
+  // Exitance 2, reflectance 0.75: after k bounces 8 (1 - 0.75^(k + 1)) everywhere; every ray and every light
+  // sample finds the same, so there is hardly any noise. The MIS weights of direct light are what remains.
+  const Lit furnace(made::box({4, 3, 2.5f}, Vec3(0.75f), Vec3(2 / kPi)));
+  for (const int bounces : {0, 1, 2, 7, ReferenceOptions::kUnlimited}) {
+    LightmapOptions options = plain(64);
+    options.max_bounces = bounces;
+    const double exact = bounces < 0 ? 8 : 8 * (1 - std::pow(0.75, bounces + 1));
+    expectNear(furnace.mean(furnace.solve(options)), glm::dvec3(exact), 4e-3);
+    if (bounces == 0) {
+      options.part = Part::kIndirect;
+      EXPECT_EQ(furnace.mean(furnace.solve(options)), glm::dvec3(0));
+    }
+  }
+}
+
+TEST(Lightmap, AnIntegratingSphere) {
+  // All bounces together 3.75 everywhere, the first 1.5.
+  scene::Scene scene = made::cavity(2, 0, Vec3(0.6f));
+  Light& light = scene.lights.emplace_back();
+  light.position = {0.5f, 0, 0.8f}, light.intensity = 10;
+  const Lit sphere(std::move(scene), 128);
+  LightmapOptions options = plain(64);
+  options.part = Part::kIndirect;
+  expectNear(sphere.mean(sphere.solve(options)), glm::dvec3(3.75), 5e-3);
+  options.max_bounces = 1;
+  expectNear(sphere.mean(sphere.solve(options)), glm::dvec3(1.5), 5e-3);
+  // Direct light has no other texel in it: I cos / r^2 at the texels about a point.
+  options.part = Part::kDirect;
+  expectNear(sphere.about(sphere.solve(options), {2, 0, 0}, {-1, 0, 0}, 0.15f),
+             glm::dvec3(3.0531243639324246), 1e-2);
+}
+
+TEST(Lightmap, ACavityUnderASky) {
+  scene::Scene scene = made::cavity(1, std::acos(0.4f), {0.8f, 0.5f, 0.2f});
+  scene.environment.radiance = Radiance(1.0f);
+  const Lit cavity(std::move(scene), 128);
+  expectNear(cavity.mean(cavity.solve(plain(64))), {2.1419949910839495, 1.449965840118366, 1.095904414042951},
+             5e-3);
+}
+
+TEST(Lightmap, TheColouredRoomAgreesWithRadiosity) {
+  struct Case {
+    Point p;
+    Normal n;
+    glm::dvec3 direct, total;
+  };
+  const Case cases[] = {
+      {{1, 1, 0}, {0, 0, 1}, {1.04083794, 0.73470913, 0.24490304}, {1.81553064, 1.15647503, 0.33666522}},
+      {{0.3f, 0.4f, 0},
+       {0, 0, 1},
+       {0.71681264, 0.50598540, 0.16866180},
+       {1.53281411, 0.83894002, 0.24763873}},
+      {{0, 1, 1}, {1, 0, 0}, {1.03933311, 0.73364690, 0.24454897}, {1.84927348, 1.28535091, 0.37032909}},
+      {{2, 0.6f, 1.5f},
+       {-1, 0, 0},
+       {1.09853639, 0.77543745, 0.25847915},
+       {2.00218667, 1.22754678, 0.37321879}},
+      {{1, 2, 0.5f}, {0, -1, 0}, {0.58701426, 0.41436301, 0.13812100}, {1.45483491, 0.90399898, 0.25304562}},
+      {{0.3f, 1, 2}, {0, 0, -1}, {0, 0, 0}, {1.00965678, 0.41351443, 0.10331405}}};
+  const Lit room(made::colouredRoom(false), 256);
+  LightmapOptions options = plain(128);
+  options.cache_samples = 64;
+  const auto total = room.solve(options);
+  options.part = Part::kDirect;
+  const auto direct = room.solve(options);
+  options.part = Part::kIndirect;
+  const auto indirect = room.solve(options);
+  for (const Case& c : cases) {
+    expectNear(room.about(total, c.p, c.n, 0.05f), c.total, 8e-3, "total");
+    expectNear(room.about(direct, c.p, c.n, 0.05f), c.direct, 8e-3, "direct");
+    expectNear(room.about(indirect, c.p, c.n, 0.05f), c.total - c.direct, 1.2e-2, "indirect");
+  }
+}
+
+TEST(Lightmap, TheRoomWithABlockAgreesWithAnotherPathTracer) {
+  const Lit room(made::colouredRoom(true), 256);
+  LightmapOptions options = plain(128);
+  options.cache_samples = 64;
+  const auto e = room.solve(options);
+  expectNear(room.about(e, {1.3f, 0.9f, 0}, {0, 0, 1}, 0.05f), {1.63762720, 1.17615725, 0.32760439}, 1.2e-2);
+  expectNear(room.about(e, {0.2f, 1.3f, 0}, {0, 0, 1}, 0.05f), {0.49434045, 0.11661503, 0.03026759}, 2e-2);
+  expectNear(room.about(e, {0.6f, 2, 0.6f}, {0, -1, 0}, 0.05f), {0.74623925, 0.43226462, 0.11147470}, 1.2e-2);
+  expectNear(room.about(e, {0.65f, 1.3f, 1.2f}, {0, 0, 1}, 0.05f), {4.44208196, 2.95670403, 0.95071046},
+             1.2e-2);
+}
+
+TEST(Lightmap, BacksOfSurfacesReflectToo) {
+  // A room whose walls face outwards: they are met from behind, and light goes on from there.
+  const auto room = [](bool outwards) {
+    scene::Scene scene;
+    scene::Mesh walls, plate;
+    made::addBox(walls, {-2, -2, 0}, {2, 2, 3});
+    if (!outwards) {
+      for (UVec3& t : walls.triangles) std::swap(t.y, t.z);
+      for (Normal& n : walls.normals) n = -n;
+    }
+    made::addInstance(scene, std::move(walls));
+    made::addQuad(plate, {-0.5f, -0.5f, 1}, {1, 0, 0}, {0, 1, 0});
+    made::addInstance(scene, std::move(plate));
+    scene.materials[0].base_colour = Vec4(0.5f, 0.5f, 0.5f, 1);
+    Light& light = scene.lights.emplace_back();
+    light.position = {0.3f, 0.2f, 2}, light.intensity = 10;
+    return scene;
+  };
+  LightmapOptions options = plain(256);
+  options.part = Part::kIndirect;
+  const Lit in(room(false), 128), out(room(true), 128);
+  const double expected = in.mean(in.solve(options), 1).x;
+  EXPECT_GT(expected, 0.5);
+  EXPECT_NEAR(out.mean(out.solve(options), 1).x, expected, 0.015 * expected);
+}
+
+TEST(Lightmap, TexelsInsideGeometryAreFoundAndDoNotDarkenTheRest) {
+  // A block stands on a floor, sunk into it: the floor inside is dark and sees backs. Without the look-up's
+  // substitutes the block's foot gets too little from the floor.
+  scene::Scene scene;
+  scene::Mesh ground, block;
+  made::addQuad(ground, {-2, -2, 0}, {4, 0, 0}, {0, 4, 0});
+  made::addInstance(scene, std::move(ground));
+  made::addBox(block, {-0.5f, -0.5f, -0.1f}, {0.5f, 0.5f, 1});
+  made::addInstance(scene, std::move(block));
+  scene.materials[0].base_colour = Vec4(0.8f, 0.8f, 0.8f, 1);
+  scene.environment.radiance = Radiance(1.0f);
+  const Lit lit(std::move(scene), 128);
+  const auto e = lit.solve(plain(256));
+  for (std::size_t i = 0; i < lit.texels.points.size(); ++i) {
+    const atlas::SurfacePoint& p = lit.texels.points[i];
+    if (p.instance != 0) continue;
+    const float inside = std::max(std::abs(p.position.x), std::abs(p.position.y));
+    if (inside < 0.45f) {
+      EXPECT_GT(e.back_share[i], 0.9f);
+    } else if (inside > 0.55f) {
+      EXPECT_EQ(e.back_share[i], 0.0f);
+    }
+  }
+}
+
+TEST(Lightmap, ErrorsAreWhatTheySay) {
+  const Lit room(made::colouredRoom(true), 64);
+  LightmapOptions options = plain(2048);
+  options.cache_samples = 256;
+  const auto truth = room.solve(options);
+  options = plain(64);
+  options.cache_samples = 256;
+  double actual = 0, estimated = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    options.seed = 100 + seed;
+    const auto e = room.solve(options);
+    for (std::size_t i = 0; i < e.value.size(); ++i) {
+      if (e.back_share[i] > 0.25f) continue;
+      const double d = luminance(e.value[i].rgb - truth.value[i].rgb);
+      actual += d * d, estimated += static_cast<double>(e.error[i]) * e.error[i];
+    }
+  }
+  EXPECT_LT(actual, 1.3 * estimated);
+  EXPECT_GT(actual, 0.3 * estimated);
+}
+
+TEST(Lightmap, StoppingEarlyReachesItsErrorAndLeavesNoBias) {
+  scene::Scene scene = made::colouredRoom(true);
+  const Lit room(std::move(scene), 64);
+  LightmapOptions options = plain(4096);
+  options.cache_samples = 256;
+  const auto truth = room.solve(options);
+  options.min_samples = 16, options.target_error = 0.05f;
+  const auto e = room.solve(options);
+  EXPECT_LT(e.rays, truth.rays / 8);
+  const double mean = luminance(Vec3(room.mean(truth)));
+  EXPECT_NEAR(luminance(Vec3(room.mean(e))), mean, 4e-3 * mean);
+  double squares = 0;
+  for (std::size_t i = 0; i < e.value.size(); ++i)
+    squares += std::pow(luminance(e.value[i].rgb - truth.value[i].rgb), 2);
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(e.value.size())), 0.05 * mean);
+}
+
+TEST(Lightmap, BitsDependNeitherOnThreadsNorOnTheSelection) {
+  scene::Scene scene = made::colouredRoom(true);
+  scene.environment.radiance = Radiance(0.1f);
+  const Lit room(std::move(scene), 64);
+  LightmapOptions options{.min_samples = 16, .max_samples = 64, .target_error = 0.02f, .smoothed = true};
+  const auto all = room.solve(options);
+  LightmapResult one;
+  {
+    const ThreadLimit limit(1);
+    one = room.solve(options);
+  }
+  const std::vector<std::uint32_t> which = {5, 6, 100, 731};
+  const auto some = room.solve(options, which);
+  for (std::size_t i = 0; i < all.value.size(); ++i) EXPECT_EQ(all.value[i], one.value[i]);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    EXPECT_EQ(some.value[k], all.value[which[k]]);
+    EXPECT_EQ(some.error[k], all.error[which[k]]);
+  }
+}
+
+TEST(Lightmap, GlossyMaterialsKeepTheirEnergy) {
+  // White metal loses nothing: with k bounces the mean over the walls is k + 1 times the direct one.
+  scene::Scene scene = made::box(Vec3(2), Vec3(1), Vec3(0));
+  for (scene::Material& m : scene.materials) m.metallic = 1, m.roughness = 0.3f;
+  scene.materials[5].emission = Vec3(1);
+  const Lit room(std::move(scene));
+  LightmapOptions options = plain(64);
+  options.materials = Materials::kFull;
+  options.max_bounces = 3;
+  expectNear(room.mean(room.solve(options)), glm::dvec3(4 * M_PI / 6), 1e-2);
+}
+
+}  // namespace
+}  // namespace relume::transport
