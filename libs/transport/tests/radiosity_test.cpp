@@ -165,6 +165,67 @@ TEST(Radiosity, BitsDependNeitherOnThreadsNorOnTheSelection) {
   }
 }
 
+TEST(Radiosity, TexelsInsideGeometryDoNotDarkenTheRest) {
+  // A block stands on a floor, sunk into it. Without the look-up's substitutes, and with texels inside the
+  // block as parts of patches, the foot gets too little from the floor.
+  scene::Scene scene;
+  scene::Mesh ground, block;
+  made::addQuad(ground, {-2, -2, 0}, {4, 0, 0}, {0, 4, 0});
+  made::addInstance(scene, std::move(ground));
+  made::addBox(block, {-0.55f, -0.55f, -0.1f}, {0.55f, 0.55f, 1});
+  made::addInstance(scene, std::move(block));
+  scene.materials[0].base_colour = Vec4(0.8f, 0.8f, 0.8f, 1);
+  scene.environment.radiance = Radiance(1.0f);
+  const Patched lit(std::move(scene), 128);
+  LightmapOptions options = plain(128);
+  options.part = Part::kIndirect;
+  options.method = LightmapMethod::kGather, options.cache_samples = 256;
+  const auto truth = lit.solve(options);
+  options.method = LightmapMethod::kRadiosity;
+  for (const std::uint32_t patch : {1u, 8u}) {
+    options.radiosity.patch = patch;
+    const auto e = lit.solve(options);
+    // The feet of the walls, over the floor.
+    double sum = 0, expected = 0;
+    for (std::size_t i = 0; i < e.value.size(); ++i) {
+      const atlas::SurfacePoint& p = lit.texels.points[i];
+      if (p.instance != 1 || std::abs(p.geometric_normal.z) > 0.1f || p.position.z < 0.01f ||
+          p.position.z > 0.06f)
+        continue;
+      sum += static_cast<double>(e.value[i].rgb.x), expected += static_cast<double>(truth.value[i].rgb.x);
+    }
+    EXPECT_GT(expected, 0);
+    EXPECT_NEAR(sum, expected, 0.02 * expected) << patch;
+  }
+}
+
+TEST(Radiosity, NormalMapsCostLight) {
+  // Normals turned by 60 degrees get half of the direct light (reflectance.h): so does the first bounce.
+  const auto room = [](bool mapped) {
+    scene::Scene scene = made::box(Vec3(2), Vec3(1), Vec3(0));
+    auto image = std::make_shared<image::Image8>(
+        image::Image8{.width = 1, .height = 1, .channels = 4, .data = {238, 128, 191, 255}});
+    scene.textures.push_back({.image = std::move(image)});
+    for (scene::Mesh& m : scene.meshes) {
+      m.uv[0].assign(m.positions.size(), Vec2(0));
+      const Vec3 along = glm::normalize(m.positions[1] - m.positions[0]);
+      m.tangents.assign(m.positions.size(), Vec4(along, 1));
+    }
+    for (scene::Material& m : scene.materials) {
+      m.metallic = 1;
+      if (mapped) m.normal_texture.texture = 0;
+    }
+    Light& light = scene.lights.emplace_back();
+    light.position = Point(1), light.intensity = 10;
+    return scene;
+  };
+  LightmapOptions options = plain(64, {.rays = 256});
+  options.materials = Materials::kFull, options.part = Part::kIndirect, options.max_bounces = 1;
+  const Patched plain_room(room(false), 32), mapped_room(room(true), 32);
+  const double without = plain_room.mean(plain_room.solve(options)).x;
+  EXPECT_NEAR(mapped_room.mean(mapped_room.solve(options)).x, 0.5 * without, 0.01 * without);
+}
+
 TEST(Radiosity, BacksOfSurfacesReflectNothing) {
   // The limit that the header states: a room of walls that face outwards has direct light alone.
   scene::Scene scene;
