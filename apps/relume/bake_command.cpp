@@ -27,7 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BakeCommandOptions {
-  std::string input, output, lights, bounces, quality = "medium", cache, max_memory, isa, stats, report, progress = "auto";
+  std::string input, output, lights, bounces, quality = "medium", cache, max_memory, isa, stats, report,
+                                              progress = "auto";
   std::vector<std::string> layers;
   int atlas_size = atlas::AtlasOptions{}.page_size;
   int gutter = atlas::AtlasOptions{}.gutter;

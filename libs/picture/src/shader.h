@@ -6,8 +6,8 @@
 #pragma once
 #include <span>
 
-#include "relume/picture/baked_values.h"
 #include "direct_light.h"
+#include "relume/picture/baked_values.h"
 
 namespace relume::picture {
 

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "relume/picture/baked_values.h"
 #include "hand_made.h"
 #include "relume/image/colour.h"
+#include "relume/picture/baked_values.h"
 
 namespace relume::picture {
 namespace {

@@ -49,9 +49,16 @@ Normal unit(Vec3 v) {
 }  // namespace
 
 Point worldPosition(const Scene& scene, const Hit& hit) {
-  const Corners at = cornersOf(scene, hit);
-  return Point(scene.instances[hit.instance].world_from_local *
-               Vec4(at.interpolate(at.mesh.positions), 1.0f));
+  // Corners first, as the tracer has them: where a node brings far coordinates to the origin, the other order
+  // would leave points beside the triangle, by more than rays start off it.
+  const Mat4& world_from_local = scene.instances[hit.instance].world_from_local;
+  const Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+  const UVec3 t = mesh.triangles[hit.triangle];
+  const auto corner = [&](std::uint32_t i) {
+    return Point(world_from_local * Vec4(mesh.positions[i], 1.0f));
+  };
+  const Point a = corner(t.x);
+  return a + hit.b1 * (corner(t.y) - a) + hit.b2 * (corner(t.z) - a);
 }
 
 Normal geometricNormal(const Scene& scene, std::uint32_t instance, std::uint32_t triangle) {

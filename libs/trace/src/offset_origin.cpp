@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where a ray that leaves a surface starts: integer steps of the coordinates' own spacing far from the
 // world's origin, a fixed length near it, where the spacing vanishes but errors of the surface's other
-// coordinates do not; and no less than a few spacings of the largest coordinate, because transforms mix them: of a
-// Cornell box 550 units wide, placed by a node, a wall at x = 0 was black in places. Based on:
+// coordinates do not; and no less than a few spacings of the largest coordinate, because transforms mix them:
+// of a Cornell box 550 units wide, placed by a node, a wall at x = 0 was black in places. Based on:
 //   [WB19] Waechter, Binder. A Fast and Robust Method for Avoiding Self-Intersection. Ray Tracing Gems ch. 6,
 //   2019.
 #include <algorithm>

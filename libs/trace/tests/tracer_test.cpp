@@ -235,6 +235,55 @@ TEST(OffsetOrigin, LeavesTheSurface) {
   }
 }
 
+// A wall at x = 0 that a node moved there from hundreds of metres away: its points are right to some 1e-5,
+// which is nothing beside their other coordinates, but much beside x.
+TEST(OffsetOrigin, LeavesAWallThatANodeMoved) {
+  scene::Mesh wall;
+  addQuad(wall, {277.3f, -274.4f, -279.6f}, {0, 548.8f, 0}, {0, 0, 559.2f});
+  const auto last = static_cast<std::uint32_t>(wall.triangles.size());
+  for (const Vec3 to : {Vec3(-277.3f, 0, 0), Vec3(-277.3f, 274.4f, 279.6f)}) {
+    scene::Scene scene;
+    addInstance(scene, addMesh(scene, wall), glm::translate(Mat4(1.0f), to));
+    const Tracer tracer(scene);
+    int hits = 0;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+      Vec2 u = sobol2(i, 5);
+      if (u.x + u.y > 1.0f) u = 1.0f - u;
+      const scene::Hit place{0, i % last, u.x, u.y};
+      const Normal n = scene::geometricNormal(scene, 0, place.triangle);
+      const Direction d = Frame::about(n).toWorld(squareToCosineHemisphere(sobol2(i, 6)));
+      hits += tracer.occluded({offsetOrigin(scene::worldPosition(scene, place), n), d, 1000.0f});
+    }
+    EXPECT_EQ(hits, 0);
+  }
+}
+
+// Which side of a surface a ray meets is told for double-sided ones too, though they have no back face.
+TEST(Tracer, PacketsTellTheSide) {
+  for (const bool double_sided : {false, true}) {
+    scene::Mesh quad;
+    addQuad(quad, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});  // faces +z
+    scene::Scene scene = sceneOf(std::move(quad));
+    scene.materials[0].double_sided = double_sided;
+    for (const float mirror : {1.0f, -1.0f}) {
+      scene.instances[0].world_from_local = glm::scale(Mat4(1.0f), Vec3(mirror, 1, 1));
+      const Tracer tracer(scene);
+      RayPacket rays{};
+      for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        rays.origin_z[i] = rays.direction_z[i] = i == 0 ? 1.0f : -1.0f;  // lane 0 from the front
+        rays.direction_z[i] *= -1.0f;
+        rays.t_max[i] = i < 2 ? kInfinity : -1.0f;
+        rays.origin_x[i] = 0.3f, rays.origin_y[i] = 0.1f;
+      }
+      HitPacket hits;
+      tracer.intersectPacket(rays, hits);
+      EXPECT_EQ(hits.hit, 3u);
+      EXPECT_EQ(hits.behind, 2u) << "mirror " << mirror;
+      EXPECT_EQ(hits.back_face, double_sided ? 0u : 2u);
+    }
+  }
+}
+
 TEST(OffsetOrigin, MovesOffAlongTheNormal) {
   for (const Point p : {Point(0), Point(5, -7, 1000), Point(-1e-3f, 1e-3f, 40)}) {
     for (const Normal n : {Normal(0, 0, 1), Normal(0, 0, -1), glm::normalize(Normal(1, -2, 0.5f))}) {

@@ -18,13 +18,12 @@
 #include <bit>
 #include <cmath>
 #include <memory>
-#include <mutex>
 
 #include "direction_batch.h"
 #include "error_estimate.h"
 #include "group_rays.h"
+#include "group_solving.h"
 #include "relume/core/check.h"
-#include "relume/core/parallel.h"
 #include "sample_table.h"
 #include "texel_groups.h"
 
@@ -45,12 +44,6 @@ std::uint32_t spreadSample(std::uint32_t j, std::uint32_t count, std::uint32_t k
   std::uint32_t reversed = 0;
   for (std::uint32_t bit = 1; bit < count; bit <<= 1) reversed = (reversed << 1) | ((j & bit) != 0);
   return j * step + reversed % step;
-}
-
-/// How many times smaller smoothing makes the error of a texel that shares its block with so many of its
-/// chart: as the root of what the window holds, but for what differences of value and normal leave out.
-float smoothingGain(std::size_t texels) {
-  return std::max(1.0f, std::sqrt(static_cast<float>(texels)) / 1.5f);
 }
 
 /// What is known of one texel after some rounds.
@@ -313,32 +306,6 @@ class GroupSolver {
   std::uint64_t traced_ = 0;
 };
 
-/// Where the result of a point goes: its place in a selection.
-class Slots {
- public:
-  Slots(std::span<const std::uint32_t> which, std::size_t points)
-      : count_(which.empty() ? points : which.size()) {
-    for (const std::uint32_t i : which) RELUME_CHECK_LT(i, points);
-    if (which.empty()) return;
-    first_ = which[0];
-    // Nearly always a run of points, which needs no table.
-    const auto apart = [](std::uint32_t a, std::uint32_t b) { return b != a + 1; };
-    if (std::adjacent_find(which.begin(), which.end(), apart) == which.end()) return;
-    table_.assign(points, scene::kNone);
-    for (std::size_t i = 0; i < which.size(); ++i) table_[which[i]] = static_cast<std::uint32_t>(i);
-  }
-
-  std::uint32_t operator()(std::uint32_t point) const {
-    if (!table_.empty()) return table_[point];
-    return point >= first_ && point - first_ < count_ ? point - first_ : scene::kNone;
-  }
-
- private:
-  std::size_t count_;
-  std::uint32_t first_ = 0;
-  std::vector<std::uint32_t> table_;
-};
-
 void checkOptions(const OcclusionOptions& options) {
   RELUME_CHECK(std::has_single_bit(options.min_samples) && std::has_single_bit(options.max_samples));
   RELUME_CHECK_LE(options.min_samples, options.max_samples);
@@ -358,26 +325,12 @@ struct OcclusionSolver::Impl {
                 options_.max_samples, options_.seed,
                 options_.smoothed ? BlockSamples::kShared : BlockSamples::kSeparate) {}
 
-  /// A group solver that no other thread has; making one costs as much as some groups.
-  std::unique_ptr<GroupSolver> take() {
-    const std::lock_guard lock(mutex);
-    if (idle.empty()) return std::make_unique<GroupSolver>(tracer, texels, samples, options);
-    auto solver = std::move(idle.back());
-    idle.pop_back();
-    return solver;
-  }
-  void giveBack(std::unique_ptr<GroupSolver> solver) {
-    const std::lock_guard lock(mutex);
-    idle.push_back(std::move(solver));
-  }
-
   const trace::Tracer& tracer;
   const atlas::Texels& texels;
   const OcclusionOptions options;
   const TexelGroups groups;
   const SampleTable samples;
-  std::mutex mutex;
-  std::vector<std::unique_ptr<GroupSolver>> idle;
+  SolverPool<GroupSolver> pool;
 };
 
 OcclusionSolver::OcclusionSolver(const trace::Tracer& tracer, const atlas::Texels& texels,
@@ -389,38 +342,19 @@ OcclusionSolver::~OcclusionSolver() = default;
 OcclusionSolver::OcclusionSolver(OcclusionSolver&&) noexcept = default;
 
 OcclusionResult OcclusionSolver::solve(Progress& progress, std::span<const std::uint32_t> which) {
-  const TexelGroups& groups = impl_->groups;
-  const std::size_t points = impl_->texels.points.size(), count = which.empty() ? points : which.size();
+  Impl& impl = *impl_;
   OcclusionResult result;
+  const std::size_t count = which.empty() ? impl.texels.points.size() : which.size();
   result.value.resize(count);
   result.error.resize(count);
   result.back_share.resize(count);
-  if (impl_->options.bent_normal) result.bent.resize(count);
-  const Slots slots_of(which, points);
-  const std::vector<std::size_t> tiles =
-      groups.tilesOf(count == points ? std::span<const std::uint32_t>() : which);
-
-  std::vector<std::uint64_t> rays(tiles.size(), 0);
-  parallelFor(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-    auto solver = impl_->take();
-    for (std::size_t tile = begin; tile < end; ++tile) {
-      const std::uint64_t before = solver->rays();
-      groups.forEachGroup(tiles[tile], [&](std::span<const std::uint32_t> group) {
-        std::array<std::uint32_t, kGroupTexels> slots;
-        std::transform(group.begin(), group.end(), slots.begin(), slots_of);
-        const auto used = std::span(slots).first(group.size());
-        const auto skipped = std::count(used.begin(), used.end(), scene::kNone);
-        if (skipped == std::ssize(used) || progress.cancelled()) return;
-        const WorkItem item("texel", impl_->texels.points[group[0]].texel);
-        solver->solve(group, used, result);
-        progress.advance(used.size() - static_cast<std::size_t>(skipped));
-      });
-      rays[tile] = solver->rays() - before;
-    }
-    impl_->giveBack(std::move(solver));
-  });
-  progress.throwIfCancelled();
-  for (const std::uint64_t r : rays) result.rays += r;
+  if (impl.options.bent_normal) result.bent.resize(count);
+  const auto make = [&] {
+    return std::make_unique<GroupSolver>(impl.tracer, impl.texels, impl.samples, impl.options);
+  };
+  result.rays =
+      solveGroups(impl.groups, impl.texels, which, progress, impl.pool, make,
+                  [&](GroupSolver& solver, auto group, auto slots) { solver.solve(group, slots, result); });
   return result;
 }
 

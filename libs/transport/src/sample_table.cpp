@@ -21,21 +21,21 @@ SampleTable::SampleTable(std::uint32_t first, std::uint32_t total, std::uint64_t
   const std::uint32_t direction_stream = streamOf(seed, 0, 0), place_stream = streamOf(seed, 0, 1);
   DirectionBatch directions;
   SquareBatch squares;
-  forEachChunk(first, total, sharing, [&](std::uint32_t begin, std::uint32_t count, std::uint32_t column,
-                                          std::uint32_t index) {
-    directionBatch(index, count, direction_stream, directions);
-    squareBatch(index, count, place_stream, squares);
-    // Point i of the squares would lie in the same column in every batch, because its low index bits say
-    // so: the places of one cell of directions would not spread. Exchanging points by the batch's number
-    // gives each cell the columns and rows of a net.
-    const std::uint32_t exchange = (index / count) & (count - 1);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::size_t at = std::size_t{begin + i} * kColumns + column;
-      x[at] = directions.x[i], y[at] = directions.y[i], z[at] = directions.z[i];
-      u[at] = squares.x[i ^ exchange], v[at] = squares.y[i ^ exchange];
-      code[at] = directions.code[i];
-    }
-  });
+  forEachChunk(first, total, sharing,
+               [&](std::uint32_t begin, std::uint32_t count, std::uint32_t column, std::uint32_t index) {
+                 directionBatch(index, count, direction_stream, directions);
+                 squareBatch(index, count, place_stream, squares);
+                 // Point i of the squares would lie in the same column in every batch, because its low index
+                 // bits say so: the places of one cell of directions would not spread. Exchanging points by
+                 // the batch's number gives each cell the columns and rows of a net.
+                 const std::uint32_t exchange = (index / count) & (count - 1);
+                 for (std::uint32_t i = 0; i < count; ++i) {
+                   const std::size_t at = std::size_t{begin + i} * kColumns + column;
+                   x[at] = directions.x[i], y[at] = directions.y[i], z[at] = directions.z[i];
+                   u[at] = squares.x[i ^ exchange], v[at] = squares.y[i ^ exchange];
+                   code[at] = directions.code[i];
+                 }
+               });
 }
 
 }  // namespace relume::transport

@@ -235,6 +235,29 @@ TEST(LightTree, ChoosesWithTheProbabilityThatItTells) {
   EXPECT_NEAR(sum, 1, 1e-4);
 }
 
+// Nodes weigh eight groups at once by vector code; one by one must come to the same.
+TEST(LightTree, NodesWeighAsSingleGroupsDo) {
+  std::vector<EmitterBounds> lights;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    EmitterBounds& b = lights.emplace_back();
+    const Vec2 u = sobol2(i, 1), v = sobol2(i, 2);
+    b.box.add(Point(4 * u.x, 4 * u.y, v.x)), b.box.add(Point(4 * u.x + v.y, 4 * u.y + 0.2f, v.x + u.x));
+    b.axis = squareToSphere(v);
+    b.cos_spread = std::cos(u.x * 3), b.cos_emission = std::cos(0.5f + u.y);
+    b.two_sided = i % 3 == 0, b.intensity = 0.5f + u.x;
+  }
+  const LightTree tree(lights);
+  for (std::uint32_t k = 0; k < 500; ++k) {
+    const Vec2 u = sobol2(k, 3);
+    const Point p(8 * u.x - 2, 8 * u.y - 2, 4 * sobol2(k, 4).x - 2);
+    const Normal n = k % 5 == 0 ? Normal(0) : squareToSphere(sobol2(k, 5));
+    float sum = 0;
+    for (const EmitterBounds& b : lights) sum += b.importance(p, n);
+    for (std::uint32_t i = 0; i < lights.size(); ++i)
+      EXPECT_NEAR(tree.probability(p, n, i), sum > 0 ? lights[i].importance(p, n) / sum : 0.0f, 2e-5f);
+  }
+}
+
 TEST(LightTree, AThousandLightsMakeHardlyMoreNoiseThanTen) {
   const auto relativeNoise = [](int count) {
     scene::Scene scene;

@@ -276,7 +276,8 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
       return std::make_unique<PathGroup>(impl.tracer, impl.texels, impl.lookup, impl.emitters,
                                          impl.directions, impl.options);
     };
-    result.rays = solveGroups(impl.groups, impl.texels, which, progress, make, solve);
+    SolverPool<PathGroup> pool;
+    result.rays = solveGroups(impl.groups, impl.texels, which, progress, pool, make, solve);
     return result;
   }
   const bool first = !impl.cache;
@@ -284,7 +285,8 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
   const Shared shared{impl.tracer,     impl.texels, impl.options, impl.emitters, impl.lookup,
                       impl.directions, impl.lights, *impl.cache,  impl.mean};
   const auto make = [&] { return std::make_unique<GroupSolver>(shared); };
-  result.rays = solveGroups(impl.groups, impl.texels, which, progress, make, solve);
+  SolverPool<GroupSolver> pool;
+  result.rays = solveGroups(impl.groups, impl.texels, which, progress, pool, make, solve);
   if (first) result.rays += impl.cache->rays();
   return result;
 }

@@ -13,8 +13,8 @@ Quality parseQuality(std::string_view name);
 
 struct QualitySettings {
   std::uint32_t min_samples = 0, max_samples = 0;  ///< rays per texel, powers of two
-  float target_error = 0;  ///< standard error at which a texel is finished, of a value in [0, 1]
-  bool filter = false;     ///< edge-aware smoothing in texel space
+  float target_error = 0;            ///< standard error at which a texel is finished, of a value in [0, 1]
+  bool filter = false;               ///< edge-aware smoothing in texel space
   std::uint32_t cache_samples = 16;  ///< rays per texel that light is handed on along before it is gathered
 };
 

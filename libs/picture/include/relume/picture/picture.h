@@ -54,10 +54,10 @@ struct PictureOptions {
 
 /// Linear radiance (or the view's own colours), RGB. `asset` may be null for views that need no bake
 /// (kAlbedo, kNormal); otherwise the scene must be the baked file's own. Surfaces without a bake (dynamic
-/// instances) have W = 1 and, in kLit and kLightmap, no light but the ambient one. Metals reflect as if diffusely. Bits do
-/// not depend on the number of threads. Throws Error kNoSuchLayer when the view needs a layer or plane that
-/// is not there, kMismatch when scene and asset do not belong together, kUsage for a size or number of
-/// samples out of range.
+/// instances) have W = 1 and, in kLit and kLightmap, no light but the ambient one. Metals reflect as if
+/// diffusely. Bits do not depend on the number of threads. Throws Error kNoSuchLayer when the view needs a
+/// layer or plane that is not there, kMismatch when scene and asset do not belong together, kUsage for a size
+/// or number of samples out of range.
 image::Image render(const trace::Tracer& tracer, const asset::Asset* asset, const Viewpoint& viewpoint,
                     const PictureOptions& options, Progress& progress);
 
