@@ -54,8 +54,9 @@ TexelLight texelLight(const RadiosityScene& scene, const Emitters& emitters, std
   TexelLight result;
   result.irradiance.assign(scene.texels.points.size(), Vec3(0.0f));
   result.back_share.assign(scene.texels.points.size(), 0.0f);
+  SolverPool<Worker> pool;
   result.rays = solveGroups(
-      scene.groups, scene.texels, {}, progress,
+      scene.groups, scene.texels, {}, progress, pool,
       [&] { return std::make_unique<Worker>(scene, emitters, directions, lights, seed); },
       [&](Worker& worker, auto group, auto) { worker.solve(group, result); });
   return result;
