@@ -38,7 +38,7 @@ std::string errorSection(const bake::Report& report, const LayerReport& layer) {
                        .axis = "estimated standard error (RMS over the chart's texels)",
                        .items = "charts"};
   if (const asset::Parameter* target = settingOf(report, "target_error");
-      target && std::get<double>(*target) > 0) {
+      target && std::get<double>(*target) > 0 && isShareOfAmbientLight(layer.kind)) {
     chart.marker = std::get<double>(*target);
     chart.marker_label = "target " + shortNumber(*chart.marker);
   }

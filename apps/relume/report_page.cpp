@@ -36,7 +36,10 @@ std::string cards(const BakeResult& result) {
   std::size_t stand_out = 0;
   for (const bake::LayerReport& layer : r.layers) {
     stand_out += layer.stand_out;
-    before = std::max(before, layer.seams_before.rms), after = std::max(after, layer.seams_after.rms);
+    if (layer.mean_value > 0) {
+      before = std::max(before, layer.seams_before.rms / layer.mean_value);
+      after = std::max(after, layer.seams_after.rms / layer.mean_value);
+    }
   }
   for (const bake::LayerStatistics& layer : s.layers) error = std::max(error, layer.error_estimate);
   double seconds = 0;
@@ -48,8 +51,9 @@ std::string cards(const BakeResult& result) {
                stand_out ? "watch" : "good");
   html +=
       card(percent(invalid), fmt::format("of the texels lie inside other geometry ({})", s.invalid_texels));
-  html += card(shortNumber(after),
-               fmt::format("RMS difference across seams, {} before stitching", shortNumber(before)));
+  html += card(
+      percent(after),
+      fmt::format("of the mean value: RMS difference across seams, {} before stitching", percent(before)));
   html += card(shortNumber(r.median_density),
                fmt::format("texels per metre; {} texels on {} page{} of {} × {}", s.texels, s.atlas_pages,
                            s.atlas_pages == 1 ? "" : "s", s.atlas_width, s.atlas_height));
@@ -70,7 +74,7 @@ std::vector<std::string> findings(const BakeResult& result) {
                     s.atlas.overlapping_texels));
   for (const bake::LayerReport& layer : r.layers) {
     const double target = targetOf(r);
-    if (target > 0 && layer.rms_error > target && layer.mean_value <= 1)
+    if (target > 0 && layer.rms_error > target && isShareOfAmbientLight(layer.kind))
       notes.push_back(
           fmt::format("Layer {}: the error is {}, above the {} that the quality asks for. The limit of "
                       "{} rays per texel came first; a higher <code>--quality</code> allows more.",

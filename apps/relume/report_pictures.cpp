@@ -28,10 +28,7 @@ struct Shot {
   std::string layer = "";
 };
 
-// The kinds whose value is a share of ambient light, which is what the views by rays show.
-bool weightsAmbientLight(const asset::Layer& layer) {
-  return layer.kind == "ao" || layer.kind == "obscurance" || layer.kind == "spectral";
-}
+bool weightsAmbientLight(const asset::Layer& layer) { return isShareOfAmbientLight(layer.kind); }
 
 std::vector<Shot> shotsFor(const asset::Asset& asset, bool has_lights) {
   std::vector<Shot> shots;
@@ -144,6 +141,10 @@ Vec3 colourOfMarks(std::uint8_t marks, Vec3 otherwise) {
 }
 
 }  // namespace
+
+bool isShareOfAmbientLight(const std::string& kind) {
+  return kind == "ao" || kind == "obscurance" || kind == "spectral";
+}
 
 std::vector<ReportPicture> drawScene(const fs::path& folder, const fs::path& baked, Progress& progress) {
   const auto opened = open(baked);

@@ -19,6 +19,10 @@ struct ReportPicture {
 std::vector<ReportPicture> drawScene(const std::filesystem::path& folder, const std::filesystem::path& baked,
                                      Progress& progress);
 
+/// The kinds whose value is a share of ambient light: what the views by rays show, with errors measured by
+/// the target of the quality.
+bool isShareOfAmbientLight(const std::string& kind);
+
 /// A page of a layer: as it is stored (tone-mapped where its values leave the range of a screen), its errors
 /// in false colour, and the marks of its suspects.
 struct PagePictures {

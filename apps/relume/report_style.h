@@ -24,7 +24,7 @@ nav { margin: .9rem 0 0; display: flex; flex-wrap: wrap; gap: .3rem 1.1rem; font
 ul.notes { list-style: none; margin: 1rem 0; padding: 0; } ul.notes li { padding: .45rem 0 .45rem 1.5rem; position: relative; max-width: 90ch; }
 ul.notes li::before { content: ""; position: absolute; left: .2rem; top: .98rem; width: .6rem; height: .6rem; border-radius: 50%; background: currentColor; }
 ul.notes li > span { color: var(--ink); }
-.grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1rem; } .grid.three { grid-template-columns: repeat(auto-fit, minmax(250px, 1fr)); }
+.grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1rem; } .grid.three { grid-template-columns: repeat(3, 1fr); } @media (max-width: 640px) { .grid.three { grid-template-columns: 1fr; } }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(440px, 100%), 1fr)); gap: 0 2.2rem; align-items: start; }
 figure { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 10px; overflow: hidden; }
 figure.wide { grid-column: 1 / -1; } img { display: block; width: 100%; height: auto; } img.texels { image-rendering: pixelated; }
