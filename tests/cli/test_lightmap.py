@@ -36,6 +36,8 @@ class Lightmap(test_cli.CliTest):
         direct = math.pi * 0.2
         for layer, args, expected in (("lightmap:materials=lambert", [], 2 * direct), ("lightmap:materials=lambert", ["--bounces", 1], 1.5 * direct),
                                       ("lightmap:materials=lambert,part=direct", [], direct), ("lightmap:materials=lambert,part=indirect,bounces=2", [], 0.75 * direct),
+                                      ("lightmap:materials=lambert,solver=radiosity", ["--bounces", 1], 1.5 * direct),
+                                      ("lightmap:materials=lambert,solver=radiosity,patch=8,formfactors=hemicube,solution=progressive", [], 2 * direct),
                                       ("lightmap:materials=lambert,solver=path", ["--samples", 64], 2 * direct)):
             self.bake("--layer", layer, *args, scene=room)
             self.assertAlmostEqual(self.mean(), expected, delta=0.01 * expected, msg=f"{layer} {args}")

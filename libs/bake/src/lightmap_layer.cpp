@@ -17,12 +17,28 @@ constexpr float kBuriedShare = 0.25f;
 // The row of a texel.
 constexpr std::size_t kErrorAt = 3, kBackAt = 4, kRow = 5;
 
+transport::RadiosityOptions radiosityOf(const Parameters& parameters) {
+  using transport::RadiosityOptions;
+  RadiosityOptions options;
+  options.patch = static_cast<std::uint32_t>(std::get<double>(parameters.at("patch")));
+  options.form_factors = std::get<std::string>(parameters.at("formfactors")) == "hemicube"
+                             ? RadiosityOptions::FormFactors::kHemicube
+                             : RadiosityOptions::FormFactors::kSampled;
+  options.solution = std::get<std::string>(parameters.at("solution")) == "progressive"
+                         ? RadiosityOptions::Solution::kProgressive
+                         : RadiosityOptions::Solution::kGathering;
+  return options;
+}
+
 LightmapOptions optionsOf(const LayerContext& context, const Parameters& parameters) {
   const std::string& part = std::get<std::string>(parameters.at("part"));
   const double bounces = std::get<double>(parameters.at("bounces"));
   LightmapOptions options;
-  if (std::get<std::string>(parameters.at("solver")) == "path")
-    options.method = transport::LightmapMethod::kPath;
+  const std::string& solver = std::get<std::string>(parameters.at("solver"));
+  options.method = solver == "path"        ? transport::LightmapMethod::kPath
+                   : solver == "radiosity" ? transport::LightmapMethod::kRadiosity
+                                           : transport::LightmapMethod::kGather;
+  options.radiosity = radiosityOf(parameters);
   options.part = part == "direct"     ? transport::Part::kDirect
                  : part == "indirect" ? transport::Part::kIndirect
                                       : transport::Part::kTotal;
@@ -70,6 +86,16 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
       .add(o.smoothed)
       .add(o.cache_samples)
       .add(o.seed);
+  if (o.method == transport::LightmapMethod::kRadiosity)
+    hasher
+        .add("radiosity 1")  // as above
+        .add(o.radiosity.patch)
+        .add(o.radiosity.form_factors)
+        .add(o.radiosity.solution)
+        .add(o.radiosity.emission)
+        .add(o.radiosity.rays)
+        .add(o.radiosity.cube_resolution)
+        .add(o.radiosity.residual);
   addLights(scene, hasher);
   for (const scene::Material& m : scene.materials) {
     hasher.add(m.normal_scale);

@@ -73,15 +73,26 @@ std::vector<LayerKind> makeRegistry() {
            {{"solver",
              Type::kChoice,
              "gather",
-             {"gather", "path"},
-             "path: unbiased random walks, slow, to judge others by"},
+             {"gather", "radiosity", "path"},
+             "radiosity: light from patches; path: unbiased random walks, slow, to judge others by"},
             {"part", Type::kChoice, "total", {"total", "direct", "indirect"}, "which light"},
             {"bounces", Type::kCount, "inf", {}, "reflections between a light and a texel; inf: all"},
             {"materials",
              Type::kChoice,
              "full",
              {"full", "lambert"},
-             "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"}},
+             "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"},
+            {"patch", Type::kCount, "4", {}, "radiosity: texels along a patch, 1 to 64"},
+            {"formfactors",
+             Type::kChoice,
+             "sampled",
+             {"sampled", "hemicube"},
+             "radiosity: by rays from all over a patch, or by the view from its middle"},
+            {"solution",
+             Type::kChoice,
+             "gathering",
+             {"gathering", "progressive"},
+             "radiosity: row by row, or shooting the patch with the most light left; both end alike"}},
        .prepare = prepareLightmap,
        .needs_light = true},
   };
@@ -171,6 +182,14 @@ Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_dia
       throw Error(ErrorCode::kUsage, "--layer " + kind.name,
                   fmt::format("shape={} needs a finite distance", shape),
                   "give for example distance=4, or use shape=exp");
+  }
+  if (kind.has("patch")) {
+    constexpr double kMostTexels = 64;
+    const double patch = std::get<double>(result["patch"]);
+    if (!(patch >= 1 && patch <= kMostTexels))
+      throw Error(ErrorCode::kUsage, "--layer " + kind.name,
+                  fmt::format("patch={} is no size of a patch", patch),
+                  fmt::format("use 1 to {} texels, for example patch=4", kMostTexels));
   }
   return result;
 }

@@ -49,10 +49,22 @@ TEST(Resolve, TauFollowsAGivenDistance) {
   EXPECT_DOUBLE_EQ(std::get<double>(endless.at("tau")), 0.625);
 }
 
+TEST(Resolve, ALightmapsSolverIsGatheringUnlessItSays) {
+  const Parameters usual = resolve(find("lightmap"), parseLayerSpec("lightmap"), 10.0f);
+  EXPECT_EQ(std::get<std::string>(usual.at("solver")), "gather");
+  const Parameters p = resolve(
+      find("lightmap"), parseLayerSpec("lightmap:solver=radiosity,patch=8,formfactors=hemicube"), 10.0f);
+  EXPECT_EQ(std::get<std::string>(p.at("solver")), "radiosity");
+  EXPECT_EQ(std::get<double>(p.at("patch")), 8.0);
+  EXPECT_EQ(std::get<std::string>(p.at("solution")), "gathering");
+}
+
 TEST(Resolve, RefusesWrongNamesAndValues) {
   for (const char* text :
        {"ao:tau=1", "ao:distance=far", "ao:distance=0", "ao:distance=nan", "ao:bent=maybe",
-        "ao:correction=some", "obscurance:shape=linear,distance=inf", "obscurance:distance=2m"}) {
+        "ao:correction=some", "obscurance:shape=linear,distance=inf", "obscurance:distance=2m",
+        "lightmap:solver=photons", "lightmap:patch=0", "lightmap:patch=65", "lightmap:patch=inf",
+        "lightmap:formfactors=exact", "lightmap:solution=direct"}) {
     const LayerSpec spec = parseLayerSpec(text);
     EXPECT_THROW(resolve(find(spec.kind), spec, 10.0f), Error) << text;
   }

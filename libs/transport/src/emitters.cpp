@@ -99,11 +99,12 @@ EmitterBounds boundsOf(const Light& light) {
 }  // namespace
 
 struct Emitters::Impl {
-  Impl(const scene::Scene& the_scene, bool include_dynamic)
+  Impl(const scene::Scene& the_scene, bool include_dynamic, EmissiveSurfaces surfaces)
       : scene(the_scene), environment(the_scene.environment) {
     std::vector<EmitterBounds> bounds;
     addLights(bounds);
-    addTriangles(bounds, include_dynamic);
+    first_triangle.assign(scene.instances.size(), scene::kNone);
+    if (surfaces == EmissiveSurfaces::kIncluded) addTriangles(bounds, include_dynamic);
     tree = std::make_unique<LightTree>(bounds);
   }
 
@@ -126,7 +127,6 @@ struct Emitters::Impl {
   }
 
   void addTriangles(std::vector<EmitterBounds>& bounds, bool include_dynamic) {
-    first_triangle.assign(scene.instances.size(), scene::kNone);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
       const scene::Instance& instance = scene.instances[i];
       const scene::Mesh& mesh = scene.meshes[instance.mesh];
@@ -262,8 +262,8 @@ struct Emitters::Impl {
   std::unique_ptr<LightTree> tree;
 };
 
-Emitters::Emitters(const scene::Scene& scene, bool include_dynamic)
-    : impl_(std::make_unique<Impl>(scene, include_dynamic)) {}
+Emitters::Emitters(const scene::Scene& scene, bool include_dynamic, EmissiveSurfaces surfaces)
+    : impl_(std::make_unique<Impl>(scene, include_dynamic, surfaces)) {}
 Emitters::~Emitters() = default;
 Emitters::Emitters(Emitters&&) noexcept = default;
 

@@ -33,15 +33,15 @@ GroupRays::GroupRays(const scene::Scene& scene, const atlas::Texels& texels, con
 void GroupRays::begin(std::span<const std::uint32_t> group, Side side) {
   RELUME_CHECK_LE(group.size(), sources_.size());
   const float sign = side == Side::kFront ? 1.0f : -1.0f;
-  if (alignment_ == Alignment::kTurned && !group.empty()) turn(texels_.points[group[0]]);
+  if (alignment_ != Alignment::kSame && !group.empty()) turn(texels_.points[group[0]]);
   for (std::size_t i = 0; i < group.size(); ++i) prepare(texels_.points[group[i]], sign, sources_[i]);
 }
 
 void GroupRays::turn(const atlas::SurfacePoint& point) {
   const auto width = static_cast<std::uint32_t>(texels_.width);
   const std::uint32_t x = point.texel % width, y = point.texel / width;
-  const std::uint32_t patch =
-      hashCombine(streamOf(seed_, point.chart, 3), y / kTurnSide * width + x / kTurnSide);
+  const std::uint32_t side = alignment_ == Alignment::kTurnedByBlock ? kGroupSide : kTurnSide;
+  const std::uint32_t patch = hashCombine(streamOf(seed_, point.chart, 3), y / side * width + x / side);
   turn_ = Turn(patch);
   shift_ = {static_cast<float>(patch >> 16) * 0x1p-16f, static_cast<float>(patch & 0xffffu) * 0x1p-16f};
 }

@@ -35,8 +35,9 @@ class Turn {
 
 /// Whether blocks of all charts send rays along the same directions of their frames, or each chart (and patch
 /// of a large one) turns them: what the same directions miss on walls that are alike does not average out,
-/// but where walls stand square to each other, as in most buildings, they have 10 % less noise.
-enum class Alignment : std::uint8_t { kSame, kTurned };
+/// but where walls stand square to each other, as in most buildings, they have 10 % less noise. Or each block
+/// for itself: best for sums over many blocks.
+enum class Alignment : std::uint8_t { kSame, kTurned, kTurnedByBlock };
 
 class GroupRays {
  public:

@@ -14,6 +14,7 @@
 #include "lightmap/light_rays.h"
 #include "lightmap/path_group.h"
 #include "lightmap/radiance_cache.h"
+#include "radiosity/radiosity.h"
 #include "relume/core/check.h"
 #include "relume/core/parallel.h"
 
@@ -120,7 +121,8 @@ class GroupSolver {
       const std::uint32_t slot = slots[i];
       if (slot == scene::kNone) continue;
       result.value[slot] = Irradiance(light_.mean(i) + gathered_.mean(i));
-      result.error[slot] = std::hypot(light_.error(i), gathered_.error(i));
+      const float cached = shared_.indirect() ? shared_.cache.error(group[i]) : 0.0f;
+      result.error[slot] = std::hypot(light_.error(i), gathered_.error(i), cached);
       result.back_share[slot] =
           arrived_[i] == 0 ? 0.0f : static_cast<float>(back_[i]) / static_cast<float>(arrived_[i]);
     }
@@ -208,15 +210,24 @@ struct LightmapSolver::Impl {
 
   BlockSamples sharing() const { return options.smoothed ? BlockSamples::kShared : BlockSamples::kSeparate; }
 
-  void fillCache(Progress& progress) {
-    if (cache) return;
+  std::unique_ptr<RadianceCache> makeCache(Progress& progress) const {
+    const std::uint64_t seed = options.seed + 0x9e3779b97f4a7c15u;  // apart from the last gathering
+    if (options.method == LightmapMethod::kRadiosity)
+      return std::make_unique<RadianceCache>(
+          radiosity({tracer, lookup, texels, groups},
+                    {options.radiosity, options.materials, options.max_bounces, seed}, progress));
     CacheOptions how;
     how.gather_samples = options.cache_samples,
     how.light_samples = std::max(options.cache_samples / 4, kLeastLightSamples);
     how.bounces = options.max_bounces < 0 ? options.max_bounces : std::max(options.max_bounces - 1, 0);
     how.materials = options.materials;
-    how.seed = options.seed + 0x9e3779b97f4a7c15u;  // apart from the last gathering
-    cache = std::make_unique<RadianceCache>(tracer, emitters, lookup, texels, groups, how, progress);
+    how.seed = seed;
+    return std::make_unique<RadianceCache>(tracer, emitters, lookup, texels, groups, how, progress);
+  }
+
+  void fillCache(Progress& progress) {
+    if (cache) return;
+    cache = makeCache(progress);
     double sum = 0, area = 0;
     for (std::uint32_t i = 0; i < texels.points.size(); ++i) {
       if (cache->backShare(i) > 0.25f) continue;

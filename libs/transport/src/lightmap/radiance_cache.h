@@ -10,6 +10,7 @@
 //   rays for form factors and texels for patches.
 #pragma once
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "lightmap/gatherer.h"
@@ -28,6 +29,21 @@ struct CacheOptions {
 
 class RadianceCache {
  public:
+  /// What another solver found, for fronts alone; all by point.
+  struct Known {
+    std::vector<Vec3> radiance;          ///< that leaves the surface, reflected
+    std::vector<Vec3> direct, indirect;  ///< E
+    std::vector<float> back_share, error;
+    std::uint64_t rays = 0;
+  };
+  explicit RadianceCache(Known known)
+      : radiance_(std::move(known.radiance)),
+        direct_(std::move(known.direct)),
+        indirect_(std::move(known.indirect)),
+        back_share_(std::move(known.back_share)),
+        error_(std::move(known.error)),
+        rays_(known.rays) {}
+
   /// Keeps nothing but copies. Throws Error kInterrupted.
   RadianceCache(const trace::Tracer& tracer, const Emitters& emitters, const TexelLookup& lookup,
                 const atlas::Texels& texels, const TexelGroups& groups, const CacheOptions& options,
@@ -46,6 +62,9 @@ class RadianceCache {
   /// Share of gather rays that met the back of a single-sided surface.
   float backShare(std::uint32_t point) const { return back_share_[point]; }
 
+  /// Of E gathered from the cache, what its own errors make of it: an estimate of luminance; 0: not known.
+  float error(std::uint32_t point) const { return error_.empty() ? 0.0f : error_[point]; }
+
   std::uint64_t rays() const { return rays_; }
 
  private:
@@ -54,6 +73,7 @@ class RadianceCache {
   std::vector<std::uint32_t> back_of_;  ///< by point: place in radiance_; empty: there are no backs
   std::vector<Vec3> direct_, indirect_;
   std::vector<float> back_share_;
+  std::vector<float> error_;  ///< by point, or empty
   std::uint64_t rays_ = 0;
 };
 

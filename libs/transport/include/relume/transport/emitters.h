@@ -46,10 +46,16 @@ enum class Reach : std::uint8_t {
   kDistant,  ///< directional lights, the environment
 };
 
+enum class EmissiveSurfaces : std::uint8_t {
+  kIncluded,
+  kLeftOut,  ///< for who knows their light otherwise
+};
+
 class Emitters {
  public:
   /// Keeps a reference to `scene`, which must not change. `include_dynamic`: as the tracer was told.
-  explicit Emitters(const scene::Scene& scene, bool include_dynamic = false);
+  explicit Emitters(const scene::Scene& scene, bool include_dynamic = false,
+                    EmissiveSurfaces surfaces = EmissiveSurfaces::kIncluded);
   ~Emitters();
   Emitters(Emitters&&) noexcept;
 

@@ -21,13 +21,15 @@
 #include "relume/core/progress.h"
 #include "relume/core/quantity.h"
 #include "relume/trace/tracer.h"
+#include "relume/transport/radiosity.h"
 #include "relume/transport/reference.h"
 
 namespace relume::transport {
 
 enum class LightmapMethod : std::uint8_t {
-  kGather,  ///< as said above
-  kPath,    ///< random walks for every texel: unbiased, a hundred times slower; samples are paths
+  kGather,     ///< as said above
+  kRadiosity,  ///< the same, but what surfaces send out comes from patches (radiosity.h)
+  kPath,       ///< random walks for every texel: unbiased, a hundred times slower; samples are paths
 };
 
 struct LightmapOptions {
@@ -43,6 +45,7 @@ struct LightmapOptions {
   bool smoothed = false;             ///< as in OcclusionOptions
   std::uint32_t cache_samples = 16;  ///< rays per texel that light is handed on along, a power of two
   std::uint64_t seed = 1;
+  RadiosityOptions radiosity;  ///< for kRadiosity
 };
 
 /// Per texel, in the order of Texels::points.
