@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lightmap/exposure.h"
 #include "lightmap/gatherer.h"
 #include "relume/core/progress.h"
 #include "relume/transport/reference.h"
@@ -30,8 +31,8 @@ class RadianceCache {
  public:
   /// Keeps nothing but copies. Throws Error kInterrupted.
   RadianceCache(const trace::Tracer& tracer, const Emitters& emitters, const TexelLookup& lookup,
-                const atlas::Texels& texels, const TexelGroups& groups, const CacheOptions& options,
-                Progress& progress);
+                const atlas::Texels& texels, const TexelGroups& groups, const Exposure& exposure,
+                const CacheOptions& options, Progress& progress);
 
   /// Radiance that leaves the surface at the end of a ray, the same in all directions.
   Vec3 radiance(SideOfTexel surface) const {
@@ -43,7 +44,7 @@ class RadianceCache {
   /// An estimate of E at the front of a point, without what comes straight from emitters, and of that; noisy.
   const Vec3& indirect(std::uint32_t point) const { return indirect_[point]; }
   const Vec3& direct(std::uint32_t point) const { return direct_[point]; }
-  /// Share of gather rays that met the back of a single-sided surface.
+  /// Share of gather rays that met the back of a single-sided surface; 1 where nothing can be seen.
   float backShare(std::uint32_t point) const { return back_share_[point]; }
 
   std::uint64_t rays() const { return rays_; }
