@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "relume/core/error.h"
+#include "relume/core/frame.h"
 #include "relume/core/quantity.h"
 #include "relume/core/sampling.h"
 #include "relume/picture/baked_values.h"
@@ -107,6 +108,18 @@ bool coincides(const trace::Tracer& tracer, const scene::Hit& own, float diagona
   return false;
 }
 
+/// Inside a body, where no eye is: what a texel that reaches in there holds is the value beside it.
+bool buried(const trace::Tracer& tracer, const scene::Hit& own, std::uint32_t stream) {
+  constexpr std::uint32_t kRays = 16, kBacks = 4;
+  const Normal n = scene::geometricNormal(tracer.scene(), own.instance, own.triangle);
+  const Point origin = trace::offsetOrigin(scene::worldPosition(tracer.scene(), own), n);
+  const Frame frame = Frame::about(n);
+  std::uint32_t backs = 0;
+  for (std::uint32_t i = 0; i < kRays; ++i)
+    backs += tracer.intersect({origin, frame.toWorld(squareToCosineHemisphere(sobol2(i, stream)))}).back_face;
+  return backs > kBacks;
+}
+
 std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::BakedValues& baked,
                                 const VerifyOptions& options, std::size_t& skipped) {
   const scene::Scene& scene = tracer.scene();
@@ -122,7 +135,7 @@ std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::Bake
     const auto index = place ? baked.tableIndex(*place) : std::nullopt;
     if (!index || !baked.table().valid[*index] || scene::opacityAt(scene, hit) < 0.5f ||
         scene::geometricNormal(scene, hit.instance, hit.triangle) == Normal(0) ||
-        coincides(tracer, hit, diagonal)) {
+        coincides(tracer, hit, diagonal) || buried(tracer, hit, stream + 2)) {
       ++skipped;
       continue;
     }

@@ -21,8 +21,8 @@ struct VerifyOptions {
 /// Of luminance, in shares of the mean true irradiance.
 struct Verification {
   std::string layer;
-  std::size_t points = 0, skipped = 0;  ///< skipped: buried texels, places that are
-                                        ///< cut out by alpha or where two surfaces coincide
+  std::size_t points = 0, skipped = 0;  ///< skipped: buried texels and places, places
+                                        ///< that are cut out by alpha or where two surfaces coincide
   double mean_baked = 0, mean_true = 0;
   double bias = 0, bias_error = 0;  ///< (baked - true) / true, and its standard error
   double rmse = 0;                  ///< the truth's own noise taken off

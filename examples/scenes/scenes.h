@@ -19,6 +19,14 @@ GlbScene makeHall(int detail);
 GlbScene makeTemple(int detail);
 /// A small automobile on a turntable.
 GlbScene makeCar(int detail);
+/// A lit room between two dark ones (docs/leaks.md shows this scene and the next three).
+GlbScene makeRooms(int detail);
+/// Boxes sunk into the floor and into each other.
+GlbScene makeCrossing(int detail);
+/// Lamps inside their shades.
+GlbScene makeLampshade(int detail);
+/// Cupboards on, over and in the floor, and a table.
+GlbScene makeFurniture(int detail);
 
 struct SceneEntry {
   const char* name;

@@ -27,14 +27,19 @@ constexpr std::uint32_t kTurnSide = 64;
 }  // namespace
 
 GroupRays::GroupRays(const scene::Scene& scene, const atlas::Texels& texels, const SampleTable& samples,
-                     std::uint64_t seed, float limit, Alignment alignment)
-    : scene_(scene), texels_(texels), samples_(samples), seed_(seed), limit_(limit), alignment_(alignment) {}
+                     std::uint64_t seed, float limit, Alignment alignment, const Exposure* exposure)
+    : scene_(scene),
+      texels_(texels),
+      samples_(samples),
+      seed_(seed),
+      limit_(limit),
+      alignment_(alignment),
+      exposure_(exposure) {}
 
 void GroupRays::begin(std::span<const std::uint32_t> group, Side side) {
   RELUME_CHECK_LE(group.size(), sources_.size());
-  const float sign = side == Side::kFront ? 1.0f : -1.0f;
   if (alignment_ != Alignment::kSame && !group.empty()) turn(texels_.points[group[0]]);
-  for (std::size_t i = 0; i < group.size(); ++i) prepare(texels_.points[group[i]], sign, sources_[i]);
+  for (std::size_t i = 0; i < group.size(); ++i) prepare(group[i], side, sources_[i]);
 }
 
 void GroupRays::turn(const atlas::SurfacePoint& point) {
@@ -46,7 +51,9 @@ void GroupRays::turn(const atlas::SurfacePoint& point) {
   shift_ = {static_cast<float>(patch >> 16) * 0x1p-16f, static_cast<float>(patch & 0xffffu) * 0x1p-16f};
 }
 
-void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& source) const {
+void GroupRays::prepare(std::uint32_t index, Side of, Source& source) const {
+  const float side = of == Side::kFront ? 1.0f : -1.0f;
+  const atlas::SurfacePoint& point = texels_.points[index];
   const auto width = static_cast<std::uint32_t>(texels_.width),
              height = static_cast<std::uint32_t>(texels_.height);
   const std::uint32_t x = point.texel % width, y = point.texel / width % height;
@@ -57,13 +64,16 @@ void GroupRays::prepare(const atlas::SurfacePoint& point, float side, Source& so
   source.frame.shading = turn_(source.frame.shading);
   source.centre = trace::offsetOrigin(point.position, own);
   source.dp_dx = point.dp_dx, source.dp_dy = point.dp_dy;
-  source.place_count =
-      std::min<std::uint32_t>(point.sample_count, static_cast<std::uint32_t>(source.places.size()));
+  std::span<const atlas::SubSample> places;
+  if (exposure_ && of == Side::kFront) places = exposure_->places(index);
+  if (places.empty() && point.sample_count > 0)
+    places = std::span(texels_.samples).subspan(point.first_sample, point.sample_count);
+  source.place_count = static_cast<std::uint32_t>(std::min(places.size(), source.places.size()));
   Normal normal = own;
   Frame frame = source.frame.shading;
   std::uint32_t triangle = point.triangle;
   for (std::uint32_t i = 0; i < source.place_count; ++i) {
-    const atlas::SubSample& sample = texels_.samples[point.first_sample + i];
+    const atlas::SubSample& sample = places[i];
     if (sample.triangle != triangle) {  // places come triangle by triangle
       triangle = sample.triangle;
       normal = side * scene::geometricNormal(scene_, point.instance, triangle);

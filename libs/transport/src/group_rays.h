@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lightmap/exposure.h"
 #include "ray_frame.h"
 #include "relume/atlas/texels.h"
 #include "relume/trace/tracer.h"
@@ -44,7 +45,8 @@ class GroupRays {
   static constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
 
   GroupRays(const scene::Scene& scene, const atlas::Texels& texels, const SampleTable& samples,
-            std::uint64_t seed, float limit, Alignment alignment = Alignment::kSame);
+            std::uint64_t seed, float limit, Alignment alignment = Alignment::kSame,
+            const Exposure* exposure = nullptr);
 
   /// group: indices into Texels::points, at most kGroupTexels.
   void begin(std::span<const std::uint32_t> group, Side side = Side::kFront);
@@ -116,7 +118,7 @@ class GroupRays {
   };
 
   void turn(const atlas::SurfacePoint& point);
-  void prepare(const atlas::SurfacePoint& point, float side, Source& source) const;
+  void prepare(std::uint32_t index, Side side, Source& source) const;
 
   const scene::Scene& scene_;
   const atlas::Texels& texels_;
@@ -124,6 +126,7 @@ class GroupRays {
   const std::uint64_t seed_;
   const float limit_;
   const Alignment alignment_;
+  const Exposure* exposure_;
   Turn turn_;
   Vec2 shift_{0.0f};
   std::array<Source, kGroupTexels> sources_;

@@ -10,6 +10,7 @@
 #include "direction_batch.h"
 #include "error_estimate.h"
 #include "group_solving.h"
+#include "lightmap/exposure.h"
 #include "lightmap/gatherer.h"
 #include "lightmap/light_rays.h"
 #include "lightmap/path_group.h"
@@ -24,6 +25,8 @@ namespace {
 constexpr std::uint32_t kColumns = SampleTable::kColumns;
 // Of the irradiance that a texel's tolerance is a share of: not below this part of the scene's mean.
 constexpr float kDarkest = 0.25f;
+// Of the scene's mean, what may come through the cracks of a closed body.
+constexpr float kNoLight = 1e-4f;
 constexpr std::uint32_t kLeastLightSamples = 4;  // of a texel, for the cache
 
 /// The means of the samples of a group's texels, round by round, and how far they may be off.
@@ -81,6 +84,7 @@ struct Shared {
   const TexelLookup& lookup;
   const SampleTable& directions;
   const LightTable& lights;
+  const Exposure& exposure;
   const RadianceCache& cache;
   float mean = 0;  // of the irradiance that is solved for: luminance
 
@@ -94,8 +98,8 @@ class GroupSolver {
       : shared_(shared),
         options_(shared.options),
         rays_(shared.tracer.scene(), shared.texels, shared.directions, options_.seed, kInfinity,
-              Alignment::kTurned),
-        gatherer_(shared.tracer, shared.lookup, shared.emitters),
+              Alignment::kTurned, &shared.exposure),
+        gatherer_(shared.tracer, shared.lookup, shared.emitters, &shared.exposure),
         light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect) {}
 
   std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays(); }
@@ -104,7 +108,7 @@ class GroupSolver {
              LightmapResult& result) {
     rays_.begin(group);
     light_.begin(group.size()), gathered_.begin(group.size());
-    back_.fill(0), arrived_.fill(0);
+    back_.fill(BackCount());
     all_.resize(group.size());
     std::iota(all_.begin(), all_.end(), 0u);
     const float allowed = squaredTolerance(group);
@@ -123,8 +127,8 @@ class GroupSolver {
       result.value[slot] = Irradiance(light_.mean(i) + gathered_.mean(i));
       const float cached = shared_.indirect() ? shared_.cache.error(group[i]) : 0.0f;
       result.error[slot] = std::hypot(light_.error(i), gathered_.error(i), cached);
-      result.back_share[slot] =
-          arrived_[i] == 0 ? 0.0f : static_cast<float>(back_[i]) / static_cast<float>(arrived_[i]);
+      const bool dark = luminance(result.value[slot].rgb) <= kNoLight * shared_.mean;
+      result.back_share[slot] = shared_.exposure.hidden(group[i]) ? 1.0f : back_[i].share(dark);
     }
   }
 
@@ -161,8 +165,7 @@ class GroupSolver {
                       if (direct) radiance = arrival.emitted;
                       if (indirect) radiance += shared_.cache.radiance(arrival.surface);
                       values_[std::size_t{sample} * kColumns + texel] = kPi * radiance;
-                      ++arrived_[texel];
-                      back_[texel] += arrival.surface != kNoTexel && (arrival.surface & kBackBit) != 0;
+                      back_[texel].add(arrival);
                     });
   }
 
@@ -189,7 +192,7 @@ class GroupSolver {
   std::vector<std::uint32_t> all_;  // places in the group
   std::vector<Vec3> values_;
   Estimate light_, gathered_;
-  std::array<std::uint32_t, kGroupTexels> back_{}, arrived_{};
+  std::array<BackCount, kGroupTexels> back_{};
 };
 
 }  // namespace
@@ -222,12 +225,17 @@ struct LightmapSolver::Impl {
     how.bounces = options.max_bounces < 0 ? options.max_bounces : std::max(options.max_bounces - 1, 0);
     how.materials = options.materials;
     how.seed = seed;
-    return std::make_unique<RadianceCache>(tracer, emitters, lookup, texels, groups, how, progress);
+    return std::make_unique<RadianceCache>(tracer, emitters, lookup, texels, groups, *exposure, how,
+                                           progress);
   }
 
   void fillCache(Progress& progress) {
     if (cache) return;
+    exposure = std::make_unique<Exposure>(tracer, texels);
     cache = makeCache(progress);
+    std::vector<float> all(texels.points.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = luminance(cache->direct(i) + cache->indirect(i));
+    exposure->preferDark(all);
     double sum = 0, area = 0;
     for (std::uint32_t i = 0; i < texels.points.size(); ++i) {
       if (cache->backShare(i) > 0.25f) continue;
@@ -249,6 +257,7 @@ struct LightmapSolver::Impl {
   const std::uint32_t first;
   const SampleTable directions;
   const LightTable lights;
+  std::unique_ptr<Exposure> exposure;
   std::unique_ptr<RadianceCache> cache;
   float mean = 0;
 };
@@ -266,6 +275,9 @@ LightmapSolver::~LightmapSolver() = default;
 LightmapSolver::LightmapSolver(LightmapSolver&&) noexcept = default;
 
 LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::uint32_t> which) {
+  // For paths too: what is found there says which part of a texel counts.
+  const bool first = !impl_->cache;
+  impl_->fillCache(progress);
   const Impl& impl = *impl_;
   LightmapResult result;
   const std::size_t count = which.empty() ? impl.texels.points.size() : which.size();
@@ -274,16 +286,15 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
   if (impl.options.method == LightmapMethod::kPath) {
     const auto make = [&] {
       return std::make_unique<PathGroup>(impl.tracer, impl.texels, impl.lookup, impl.emitters,
-                                         impl.directions, impl.options);
+                                         impl.directions, *impl.exposure, std::min(impl.first, kMaxBatch),
+                                         impl.options);
     };
     SolverPool<PathGroup> pool;
     result.rays = solveGroups(impl.groups, impl.texels, which, progress, pool, make, solve);
     return result;
   }
-  const bool first = !impl.cache;
-  impl_->fillCache(progress);
-  const Shared shared{impl.tracer,     impl.texels, impl.options, impl.emitters, impl.lookup,
-                      impl.directions, impl.lights, *impl.cache,  impl.mean};
+  const Shared shared{impl.tracer,     impl.texels, impl.options,   impl.emitters, impl.lookup,
+                      impl.directions, impl.lights, *impl.exposure, *impl.cache,   impl.mean};
   const auto make = [&] { return std::make_unique<GroupSolver>(shared); };
   SolverPool<GroupSolver> pool;
   result.rays = solveGroups(impl.groups, impl.texels, which, progress, pool, make, solve);

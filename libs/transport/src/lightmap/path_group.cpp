@@ -34,12 +34,15 @@ float PathGroup::Sums::error() const {
 }
 
 PathGroup::PathGroup(const trace::Tracer& tracer, const atlas::Texels& texels, const TexelLookup& lookup,
-                     const Emitters& emitters, const SampleTable& directions, const LightmapOptions& options)
+                     const Emitters& emitters, const SampleTable& directions, const Exposure& exposure,
+                     std::uint32_t back_rays, const LightmapOptions& options)
     : texels_(texels),
       options_(options),
       walk_(walkOf(options)),
-      rays_(tracer.scene(), texels, directions, options.seed, kInfinity),
-      gatherer_(tracer, lookup, emitters),
+      exposure_(exposure),
+      back_rays_(back_rays),
+      rays_(tracer.scene(), texels, directions, options.seed, kInfinity, Alignment::kSame, &exposure),
+      gatherer_(tracer, lookup, emitters, &exposure),
       tracer_(tracer, emitters, walk_) {}
 
 void PathGroup::sample(std::uint32_t texel, std::uint32_t place, std::uint32_t until) {
@@ -74,18 +77,17 @@ void PathGroup::solve(std::span<const std::uint32_t> group, std::span<const std:
   }
   std::vector<std::uint32_t> all(group.size());
   std::iota(all.begin(), all.end(), 0u);
-  std::array<std::uint32_t, kGroupTexels> back{}, arrived{};
-  rays_.select(all, kBackRays);
-  gatherer_.trace(rays_, 0, kBackRays, [&](std::uint32_t texel, std::uint32_t, const Arrival& arrival) {
-    ++arrived[texel];
-    back[texel] += arrival.surface != kNoTexel && (arrival.surface & kBackBit) != 0;
+  std::array<BackCount, kGroupTexels> back{};
+  rays_.select(all, back_rays_);
+  gatherer_.trace(rays_, 0, back_rays_, [&](std::uint32_t texel, std::uint32_t, const Arrival& arrival) {
+    back[texel].add(arrival);
   });
   for (std::size_t i = 0; i < group.size(); ++i) {
     if (slots[i] == scene::kNone) continue;
     result.value[slots[i]] = Irradiance(sums_[i].mean());
     result.error[slots[i]] = sums_[i].error();
-    result.back_share[slots[i]] =
-        arrived[i] == 0 ? 0.0f : static_cast<float>(back[i]) / static_cast<float>(arrived[i]);
+    const bool dark = sums_[i].mean() == Vec3(0.0f);
+    result.back_share[slots[i]] = exposure_.hidden(group[i]) ? 1.0f : back[i].share(dark);
   }
 }
 

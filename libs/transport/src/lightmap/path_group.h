@@ -15,11 +15,12 @@ namespace relume::transport {
 
 class PathGroup {
  public:
-  /// Keeps references. directions: any table, of at least kBackRays samples.
+  /// Keeps references. The first `back_rays` samples of `directions`, a whole net, tell what lies inside
+  /// something: part of a net is a part of the hemisphere.
   PathGroup(const trace::Tracer& tracer, const atlas::Texels& texels, const TexelLookup& lookup,
-            const Emitters& emitters, const SampleTable& directions, const LightmapOptions& options);
+            const Emitters& emitters, const SampleTable& directions, const Exposure& exposure,
+            std::uint32_t back_rays, const LightmapOptions& options);
 
-  static constexpr std::uint32_t kBackRays = 16;  ///< that tell what lies inside something
   std::uint64_t rays() const { return paths_; }
   /// Results of group[i] go to slots[i], unless it is scene::kNone.
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
@@ -40,6 +41,8 @@ class PathGroup {
   const atlas::Texels& texels_;
   const LightmapOptions& options_;
   const ReferenceOptions walk_;
+  const Exposure& exposure_;
+  const std::uint32_t back_rays_;
   GroupRays rays_;
   Gatherer gatherer_;
   PathTracer tracer_;

@@ -45,13 +45,14 @@ struct RadianceCache::Builder {
 
   Builder(RadianceCache& the_cache, const trace::Tracer& the_tracer, const Emitters& the_emitters,
           const TexelLookup& the_lookup, const atlas::Texels& the_texels, const TexelGroups& the_groups,
-          const CacheOptions& the_options, Progress& the_progress)
+          const Exposure& the_exposure, const CacheOptions& the_options, Progress& the_progress)
       : cache(the_cache),
         tracer(the_tracer),
         emitters(the_emitters),
         lookup(the_lookup),
         texels(the_texels),
         groups(the_groups),
+        exposure(the_exposure),
         options(the_options),
         progress(the_progress),
         directions(options.gather_samples, options.gather_samples, options.seed, BlockSamples::kShared),
@@ -81,8 +82,9 @@ struct RadianceCache::Builder {
   /// Solves the group for one side: row i of the found is slots[i].
   struct Worker {
     explicit Worker(const Builder& b)
-        : rays(b.tracer.scene(), b.texels, b.directions, b.options.seed, kInfinity, Alignment::kTurned),
-          gatherer(b.tracer, b.lookup, b.emitters),
+        : rays(b.tracer.scene(), b.texels, b.directions, b.options.seed, kInfinity, Alignment::kTurned,
+               &b.exposure),
+          gatherer(b.tracer, b.lookup, b.emitters, &b.exposure),
           light_rays(b.tracer, b.emitters, b.lights, false) {}
     GroupRays rays;
     Gatherer gatherer;
@@ -111,7 +113,7 @@ struct RadianceCache::Builder {
                                  r.glossy() ? ggx::reflected(cosine, GlossTable::alphaOf(r.roughness))
                                             : ggx::Reflected{0, 0});
                        });
-    std::array<std::uint32_t, kGroupTexels> met_back{};
+    std::array<BackCount, kGroupTexels> met{};
     w.rays.select(w.active, n);
     const float ray_share = kPi / static_cast<float>(n);
     w.gatherer.trace(w.rays, 0, n, [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
@@ -119,13 +121,13 @@ struct RadianceCache::Builder {
       if (arrival.emitted != Vec3(0.0f))
         arrived(slot, arrival.emitted * ray_share, glossOf(found, slot, sample));
       found.ends[std::size_t{slot} * n + sample] = arrival.surface;
-      met_back[texel] += arrival.surface != kNoTexel && (arrival.surface & kBackBit) != 0;
+      met[texel].add(arrival);
     });
     for (std::size_t i = 0; i < group.size(); ++i) {
-      const float share = static_cast<float>(met_back[i]) / static_cast<float>(n);
-      if (side == Side::kFront) cache.back_share_[group[i]] = share;
+      const float share = static_cast<float>(met[i].backs) / static_cast<float>(n);
+      if (side == Side::kFront) cache.back_share_[group[i]] = exposure.hidden(group[i]) ? 1.0f : share;
       // What is inside a body sees backs that nobody else does; no light finds it either.
-      if (met_back[i] > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
+      if (met[i].behind > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
         want(slots[i], found);
     }
   }
@@ -287,6 +289,7 @@ struct RadianceCache::Builder {
   const TexelLookup& lookup;
   const atlas::Texels& texels;
   const TexelGroups& groups;
+  const Exposure& exposure;
   const CacheOptions& options;
   Progress& progress;
   const SampleTable directions;
@@ -299,9 +302,9 @@ struct RadianceCache::Builder {
 };
 
 RadianceCache::RadianceCache(const trace::Tracer& tracer, const Emitters& emitters, const TexelLookup& lookup,
-                             const atlas::Texels& texels, const TexelGroups& groups,
+                             const atlas::Texels& texels, const TexelGroups& groups, const Exposure& exposure,
                              const CacheOptions& options, Progress& progress) {
-  Builder(*this, tracer, emitters, lookup, texels, groups, options, progress).build();
+  Builder(*this, tracer, emitters, lookup, texels, groups, exposure, options, progress).build();
 }
 
 }  // namespace relume::transport

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "lightmap/exposure.h"
 #include "lightmap/gatherer.h"
 #include "relume/core/progress.h"
 #include "relume/transport/reference.h"
@@ -46,8 +47,8 @@ class RadianceCache {
 
   /// Keeps nothing but copies. Throws Error kInterrupted.
   RadianceCache(const trace::Tracer& tracer, const Emitters& emitters, const TexelLookup& lookup,
-                const atlas::Texels& texels, const TexelGroups& groups, const CacheOptions& options,
-                Progress& progress);
+                const atlas::Texels& texels, const TexelGroups& groups, const Exposure& exposure,
+                const CacheOptions& options, Progress& progress);
 
   /// Radiance that leaves the surface at the end of a ray, the same in all directions.
   Vec3 radiance(SideOfTexel surface) const {
@@ -59,7 +60,7 @@ class RadianceCache {
   /// An estimate of E at the front of a point, without what comes straight from emitters, and of that; noisy.
   const Vec3& indirect(std::uint32_t point) const { return indirect_[point]; }
   const Vec3& direct(std::uint32_t point) const { return direct_[point]; }
-  /// Share of gather rays that met the back of a single-sided surface.
+  /// Share of gather rays that met the back of a single-sided surface; 1 where nothing can be seen.
   float backShare(std::uint32_t point) const { return back_share_[point]; }
 
   /// Of E gathered from the cache, what its own errors make of it: an estimate of luminance; 0: not known.

@@ -6,7 +6,8 @@
 // Light that has bounced is gathered by cosine-weighted rays, each of which ends in one look-up of what the
 // surface there sends out (radiance cache: all bounces, found once for the whole atlas). Direct light is
 // sampled at the emitters; what gather rays meet of them by chance is combined with that. What holds: the
-// conventions of reference.h; values are means over a texel's footprint. What differs from the reference:
+// conventions of reference.h; values are means over a texel's footprint, or, where other bodies stand in it,
+// over the largest part that can be seen. What differs from the reference:
 // light leaves surfaces as from an ideal diffuse reflector, with the energy that the material's lobes have
 // (Materials::kFull), and as the mean over a texel. Limits: static surfaces only; light that passes thin
 // transmission is not tinted.
@@ -52,7 +53,8 @@ struct LightmapOptions {
 struct LightmapResult {
   std::vector<Irradiance> value;
   std::vector<float> error;       ///< estimated standard error of the luminance
-  std::vector<float> back_share;  ///< of gather rays that met a back face: a texel inside geometry is near 1
+  std::vector<float> back_share;  ///< of gather rays that met a back face: near 1 inside geometry; 1 where
+                                  ///< nothing can be seen
   std::uint64_t rays = 0;
 };
 
