@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Rays per second beside bare Embree, and relighting: runs the benchmark programs, fills docs/performance.md.
 
-    bench/rates.py [BUILD_DIR]        (default: build/bench, made by scripts/build bench)
+    bench/rates.py [BUILD_DIR] [rays|gather|relighting ...]        (default: build/bench, made by scripts/build bench; all three)
 """
 import json
 import pathlib
@@ -36,6 +36,13 @@ def rays(build):
     return table(("scene", "rays", "limit", "rays per texel", "bare Embree, million/s", "solver, million/s", "ratio"), rows)
 
 
+def gather(build):
+    found = run(build / "libs/transport/relume_transport_bench", "transport.gather")
+    return table(("scene", "rays per texel", "bare Embree, million/s", "gather rays, million/s", "ratio"),
+                 [(*name.split(".")[2].split("/")[:2], f"{row['bare_rays_per_second'] / 1e6:.1f}", f"{row['rays_per_second'] / 1e6:.1f}", f"{row['ratio']:.2f}")
+                  for name, row in found.items()])
+
+
 def relighting(build):
     found = run(build / "libs/relight/relume_relight_bench", ".")
     return table(("benchmark", "milliseconds"), [(name.split("/real_time")[0], f"{row['real_time'] * {'ns': 1e-6, 'us': 1e-3, 'ms': 1}[row['time_unit']]:.2f}")
@@ -44,8 +51,9 @@ def relighting(build):
 
 def main():
     build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/bench")
-    fill(PAGE, "rays", f"Measured on {machine()}.\n\n{rays(build)}")
-    fill(PAGE, "relighting", f"Measured on {machine()}.\n\n{relighting(build)}")
+    tables = {"rays": rays, "gather": gather, "relighting": relighting}
+    for name in sys.argv[2:] or tables:
+        fill(PAGE, name, f"Measured on {machine()}.\n\n{tables[name](build)}")
     print(f"wrote {PAGE}")
 
 
