@@ -280,20 +280,20 @@ def main():
                                            "cycles_seconds_at_that_error": equal, "cycles_extrapolated": beyond, "ratio": equal / r["seconds"],
                                            "ratio_with_atlas": equal / r["seconds_with_atlas"], "stages": stages[r["setting"]]}
     result["curves"] = rows
-    write(options, result, rows, curves)
+    write(options, "cycles", f"ambient occlusion to {options.distance:g} m", result, rows, curves)
 
 
-def write(options, result, rows, curves):
+def write(options, kind, quantity, result, rows, curves):
+    """KIND-NAME.json, .csv and .svg."""
     options.out.mkdir(parents=True, exist_ok=True)
-    base = options.out / f"cycles-{options.name}"
+    base = options.out / f"{kind}-{options.name}"
     base.with_suffix(".json").write_text(json.dumps(rounded(result), indent=1) + "\n")
     with base.with_suffix(".csv").open("w", newline="") as f:
         table = csv.DictWriter(f, rows[0].keys(), lineterminator="\n")
         table.writeheader()
         table.writerows(rounded(rows))
     series = [(tool, sorted((r["seconds"], 100 * r["relative_rmse"]) for r in points)) for tool, points in curves.items()]
-    base.with_suffix(".svg").write_text(line_plot(f"{options.title}, {options.size} x {options.size}: ambient occlusion to {options.distance:g} m", "seconds",
-                                                  "relative RMSE, %", series, True, True))
+    base.with_suffix(".svg").write_text(line_plot(f"{options.title}, {options.size} x {options.size}: {quantity}", "seconds", "relative RMSE, %", series, True, True))
     print(json.dumps(rounded({k: v for k, v in result.items() if k != "curves"}), indent=1))
 
 

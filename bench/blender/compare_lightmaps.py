@@ -15,7 +15,6 @@ Usage: bench/blender/compare_lightmaps.py SCENE [--lights LIGHTS.json] [--size 2
 Writes docs/performance/lightmap-NAME.json, .csv and .svg. Needs Blender 3.4 (2: there is none) and numpy.
 """
 import argparse
-import csv
 import json
 import math
 import os
@@ -28,7 +27,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import baked_glb  # noqa: E402
-from compare_cycles import ROOT, Quiet, at_error, line_plot, processor, rounded  # noqa: E402
+from compare_cycles import ROOT, Quiet, at_error, processor, write  # noqa: E402
 
 COUNTED = ("texels", "bvh", "seams", "lightmap", "lightmap finish")
 BARS = (0.05, 0.02)
@@ -202,21 +201,7 @@ def main():
                                            "cycles_seconds_at_that_error": seconds, "cycles_extrapolated": extrapolated, "ratio": seconds / r["seconds"],
                                            "stages": stages[r["setting"]]}
     result["curves"] = rows
-    write(options, result, rows, curves)
-
-
-def write(options, result, rows, curves):
-    options.out.mkdir(parents=True, exist_ok=True)
-    base = options.out / f"lightmap-{options.name}"
-    base.with_suffix(".json").write_text(json.dumps(rounded(result), indent=1) + "\n")
-    with base.with_suffix(".csv").open("w", newline="") as f:
-        table = csv.DictWriter(f, rows[0].keys(), lineterminator="\n")
-        table.writeheader()
-        table.writerows(rounded(rows))
-    series = [(tool, sorted((r["seconds"], 100 * r["relative_rmse"]) for r in points)) for tool, points in curves.items()]
-    base.with_suffix(".svg").write_text(line_plot(f"{options.title}, {options.size} x {options.size}: indirect irradiance", "seconds", "relative RMSE, %", series,
-                                                  True, True))
-    print(json.dumps(rounded({k: v for k, v in result.items() if k != "curves"}), indent=1))
+    write(options, "lightmap", "indirect irradiance", result, rows, curves)
 
 
 if __name__ == "__main__":

@@ -15,13 +15,9 @@
 namespace relume::transport {
 namespace {
 
+using made::expectNear;
 using made::Lit;
 using made::plain;
-
-void expectNear(glm::dvec3 value, glm::dvec3 expected, double relative, const char* what = "") {
-  for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(value[c], expected[c], relative * expected[c]) << what << " channel " << c;
-}
 
 TEST(Lightmap, AFurnaceAndItsBounces) {
   // Exitance 2, reflectance 0.75: after k bounces 8 (1 - 0.75^(k + 1)) everywhere; every ray and every light
@@ -65,24 +61,6 @@ TEST(Lightmap, ACavityUnderASky) {
 }
 
 TEST(Lightmap, TheColouredRoomAgreesWithRadiosity) {
-  struct Case {
-    Point p;
-    Normal n;
-    glm::dvec3 direct, total;
-  };
-  const Case cases[] = {
-      {{1, 1, 0}, {0, 0, 1}, {1.04083794, 0.73470913, 0.24490304}, {1.81553064, 1.15647503, 0.33666522}},
-      {{0.3f, 0.4f, 0},
-       {0, 0, 1},
-       {0.71681264, 0.50598540, 0.16866180},
-       {1.53281411, 0.83894002, 0.24763873}},
-      {{0, 1, 1}, {1, 0, 0}, {1.03933311, 0.73364690, 0.24454897}, {1.84927348, 1.28535091, 0.37032909}},
-      {{2, 0.6f, 1.5f},
-       {-1, 0, 0},
-       {1.09853639, 0.77543745, 0.25847915},
-       {2.00218667, 1.22754678, 0.37321879}},
-      {{1, 2, 0.5f}, {0, -1, 0}, {0.58701426, 0.41436301, 0.13812100}, {1.45483491, 0.90399898, 0.25304562}},
-      {{0.3f, 1, 2}, {0, 0, -1}, {0, 0, 0}, {1.00965678, 0.41351443, 0.10331405}}};
   const Lit room(made::colouredRoom(false), 256);
   LightmapOptions options = plain(128);
   options.cache_samples = 64;
@@ -91,7 +69,7 @@ TEST(Lightmap, TheColouredRoomAgreesWithRadiosity) {
   const auto direct = room.solve(options);
   options.part = Part::kIndirect;
   const auto indirect = room.solve(options);
-  for (const Case& c : cases) {
+  for (const made::RoomCase& c : made::kColouredRoom) {
     expectNear(room.about(total, c.p, c.n, 0.05f), c.total, 8e-3, "total");
     expectNear(room.about(direct, c.p, c.n, 0.05f), c.direct, 8e-3, "direct");
     expectNear(room.about(indirect, c.p, c.n, 0.05f), c.total - c.direct, 1.2e-2, "indirect");

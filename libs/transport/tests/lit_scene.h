@@ -52,6 +52,11 @@ struct Lit {
   atlas::Texels texels;
 };
 
+inline void expectNear(glm::dvec3 value, glm::dvec3 expected, double relative, const char* what = "") {
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(value[c], expected[c], relative * expected[c]) << what << " channel " << c;
+}
+
 inline LightmapOptions plain(std::uint32_t samples) {
   return {.materials = Materials::kLambert, .min_samples = samples, .max_samples = samples};
 }

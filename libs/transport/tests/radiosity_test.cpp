@@ -71,33 +71,15 @@ TEST(Radiosity, ACavityUnderASky) {
 }
 
 TEST(Radiosity, TheColouredRoomAgreesWithExactFormFactors) {
-  struct Case {
-    Point p;
-    Normal n;
-    glm::dvec3 direct, total;
-  };
-  const Case cases[] = {
-      {{1, 1, 0}, {0, 0, 1}, {1.04083794, 0.73470913, 0.24490304}, {1.81553064, 1.15647503, 0.33666522}},
-      {{0.3f, 0.4f, 0},
-       {0, 0, 1},
-       {0.71681264, 0.50598540, 0.16866180},
-       {1.53281411, 0.83894002, 0.24763873}},
-      {{0, 1, 1}, {1, 0, 0}, {1.03933311, 0.73364690, 0.24454897}, {1.84927348, 1.28535091, 0.37032909}},
-      {{2, 0.6f, 1.5f},
-       {-1, 0, 0},
-       {1.09853639, 0.77543745, 0.25847915},
-       {2.00218667, 1.22754678, 0.37321879}},
-      {{1, 2, 0.5f}, {0, -1, 0}, {0.58701426, 0.41436301, 0.13812100}, {1.45483491, 0.90399898, 0.25304562}},
-      {{0.3f, 1, 2}, {0, 0, -1}, {0, 0, 0}, {1.00965678, 0.41351443, 0.10331405}}};
   const Patched room(made::colouredRoom(false), 256);
   const auto compare = [&](const RadiosityOptions& radiosity, double of_total, double of_indirect) {
     LightmapOptions options = plain(128, radiosity);
     std::vector<Point> points;
-    for (const Case& c : cases) points.push_back(c.p);
+    for (const made::RoomCase& c : made::kColouredRoom) points.push_back(c.p);
     const auto total = room.solveNear(options, points, 0.05f);
     options.part = Part::kIndirect;
     const auto indirect = room.solveNear(options, points, 0.05f);
-    for (const Case& c : cases) {
+    for (const made::RoomCase& c : made::kColouredRoom) {
       expectNear(room.about(total, c.p, c.n, 0.05f), c.total, of_total, "total");
       expectNear(room.about(indirect, c.p, c.n, 0.05f), c.total - c.direct, of_indirect, "indirect");
     }

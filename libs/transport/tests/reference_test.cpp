@@ -133,30 +133,9 @@ TEST(Reference, ACavityUnderASky) {
 }
 
 TEST(Reference, TheColouredRoomAgreesWithRadiosity) {
-  struct Case {
-    Receiver at;
-    glm::dvec3 direct, total;
-  };
-  const Case cases[] = {
-      {receiver({1, 1, 0}, {0, 0, 1}),
-       {1.04083794, 0.73470913, 0.24490304},
-       {1.81553064, 1.15647503, 0.33666522}},
-      {receiver({0.3f, 0.4f, 0}, {0, 0, 1}),
-       {0.71681264, 0.50598540, 0.16866180},
-       {1.53281411, 0.83894002, 0.24763873}},
-      {receiver({0, 1, 1}, {1, 0, 0}),
-       {1.03933311, 0.73364690, 0.24454897},
-       {1.84927348, 1.28535091, 0.37032909}},
-      {receiver({2, 0.6f, 1.5f}, {-1, 0, 0}),
-       {1.09853639, 0.77543745, 0.25847915},
-       {2.00218667, 1.22754678, 0.37321879}},
-      {receiver({1, 2, 0.5f}, {0, -1, 0}),
-       {0.58701426, 0.41436301, 0.13812100},
-       {1.45483491, 0.90399898, 0.25304562}},
-      {receiver({0.3f, 1, 2}, {0, 0, -1}), {0, 0, 0}, {1.00965678, 0.41351443, 0.10331405}}};
   const scene::Scene room = made::colouredRoom(false);
   std::vector<Receiver> points;
-  for (const Case& c : cases) points.push_back(c.at);
+  for (const made::RoomCase& c : made::kColouredRoom) points.push_back(receiver(c.p, c.n));
   ReferenceOptions options{.samples = 8192, .materials = Materials::kLambert};
   const auto total = solve(room, points, options);
   options.part = Part::kDirect;
@@ -164,9 +143,9 @@ TEST(Reference, TheColouredRoomAgreesWithRadiosity) {
   options.part = Part::kIndirect;
   const auto indirect = solve(room, points, options);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    expectE(total, i, cases[i].total, 2e-3, "total");
-    expectE(direct, i, cases[i].direct, 1e-4, "direct");
-    expectE(indirect, i, cases[i].total - cases[i].direct, 5e-3, "indirect");
+    expectE(total, i, made::kColouredRoom[i].total, 2e-3, "total");
+    expectE(direct, i, made::kColouredRoom[i].direct, 1e-4, "direct");
+    expectE(indirect, i, made::kColouredRoom[i].total - made::kColouredRoom[i].direct, 5e-3, "indirect");
     EXPECT_LT(total.error[i].rgb.g, 0.01f * total.value[i].rgb.g);
   }
 }
