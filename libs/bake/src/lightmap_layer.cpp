@@ -11,9 +11,6 @@ namespace {
 
 using transport::LightmapOptions;
 
-// As for occlusion: a texel of which so many rays meet the back of a face lies inside geometry.
-constexpr float kBuriedShare = 0.25f;
-
 // The row of a texel.
 constexpr std::size_t kErrorAt = 3, kBackAt = 4, kRow = 5;
 
@@ -114,7 +111,7 @@ PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const 
     const float* row = rows.data() + i * kRow;
     std::copy_n(row, 3, &value.values[i * 3]);
     layer.error[i] = row[kErrorAt];
-    layer.valid[i] = row[kBackAt] <= kBuriedShare;
+    layer.valid[i] = row[kBackAt] <= transport::kBuriedShare;
   }
   if (filter) {
     std::vector<float> left(points);

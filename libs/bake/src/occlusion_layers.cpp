@@ -13,10 +13,6 @@ using transport::DistanceWeight;
 using transport::OcclusionKind;
 using transport::OcclusionOptions;
 
-// A texel of which so many rays meet the back of a face lies, in part at least, inside geometry. What the
-// buried part does not see would darken the part that shows: a row of dark dots where bodies meet.
-constexpr float kBuriedShare = 0.25f;
-
 // The row of a texel: value[channels], bent[3] if asked for, error, share of back faces.
 struct RowLayout {
   int channels = 1;
@@ -96,7 +92,7 @@ PointLayer finishRows(const RowLayout& layout, Correction correction, const atla
     for (std::size_t c = 0; layout.bent && c < 3; ++c) bent.values[i * 3 + c] = r[channels + c];
     layer.error[i] = r[layout.errorAt()];
     layer.back_share[i] = r[layout.backAt()];
-    layer.valid[i] = layer.back_share[i] <= kBuriedShare;
+    layer.valid[i] = layer.back_share[i] <= transport::kBuriedShare;
   }
   if (filter) {
     std::vector<float> left(points);

@@ -10,8 +10,9 @@
 namespace relume::transport {
 namespace {
 
-constexpr float kLeastAlpha = 1e-3f;
-constexpr float kDielectric = 0.04f;  // F0 of index 1.5 ([glTF])
+using ggx::kDielectric;
+using ggx::kLeastAlpha;
+
 constexpr float kLeastCosine = 1e-4f;
 
 float schlickWeight(float cosine) {
@@ -37,11 +38,8 @@ Bsdf Bsdf::metallicRoughness(Normal shading_normal, const scene::Surface& surfac
   bsdf.specular_ = true;
   bsdf.alpha_ = std::clamp(surface.roughness * surface.roughness, kLeastAlpha, 1.0f);
   const ggx::Reflected reflected = ggx::reflected(bsdf.outgoing_.z, bsdf.alpha_);
-  const float perfect = reflected.scale + reflected.bias;
-  const auto compensation = [&](Vec3 f0) { return Vec3(1.0f) + f0 * (1 / perfect - 1); };
-  const auto albedo = [&](Vec3 f0) {
-    return glm::min((f0 * reflected.scale + reflected.bias) * compensation(f0), Vec3(1.0f));
-  };
+  const auto compensation = [&](Vec3 f0) { return reflected.compensation(f0); };
+  const auto albedo = [&](Vec3 f0) { return glm::min(reflected.albedo(f0), Vec3(1.0f)); };
   // Each Fresnel term times its compensation, as F0 + (1 - F0) w, mixed.
   const Vec3 metal = metallic * compensation(base),
              dielectric = (1 - metallic) * compensation(Vec3(kDielectric));

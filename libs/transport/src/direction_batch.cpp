@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 
+#include "morton.h"
 #include "relume/core/check.h"
 #include "relume/core/sampling.h"
 
@@ -71,12 +72,6 @@ void points(std::uint32_t first, std::uint32_t count, std::uint32_t stream, Bits
 
 inline float toUnit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
-inline std::uint32_t spread(std::uint32_t x) {
-  x = (x | (x << 4)) & 0x0f0fu;
-  x = (x | (x << 2)) & 0x3333u;
-  return (x | (x << 1)) & 0x5555u;
-}
-
 }  // namespace
 
 void directionBatch(std::uint32_t first, std::uint32_t count, std::uint32_t stream, DirectionBatch& batch) {
@@ -97,7 +92,7 @@ void directionBatch(std::uint32_t first, std::uint32_t count, std::uint32_t stre
     x[i] = r * (wide ? c : s);
     y[i] = r * (wide ? s : c);
     z[i] = std::max(std::sqrt(std::max(0.0f, 1.0f - r * r)), 1e-4f);
-    code[i] = (spread(bits.x[i] >> 24) << 1) | spread(bits.y[i] >> 24);
+    code[i] = (spreadBits(bits.x[i] >> 24) << 1) | spreadBits(bits.y[i] >> 24);
   }
   const std::uint32_t shift = kCodeBits - static_cast<std::uint32_t>(std::countr_zero(count));
   for (std::uint32_t i = 0; i < count; ++i) {

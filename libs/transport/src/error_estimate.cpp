@@ -19,6 +19,7 @@
 #include <cstddef>
 
 #include "direction_batch.h"
+#include "morton.h"
 #include "relume/core/check.h"
 
 namespace relume::transport {
@@ -26,21 +27,6 @@ namespace {
 
 constexpr float kNet = 0.7f;
 constexpr float kUnseen = 0.25f;  // cells
-
-/// Every other bit of a Morton code.
-std::uint32_t compact(std::uint32_t x) {
-  x &= 0x5555u;
-  x = (x | (x >> 1)) & 0x3333u;
-  x = (x | (x >> 2)) & 0x0f0fu;
-  return (x | (x >> 4)) & 0x00ffu;
-}
-
-/// The inverse: bits of x at even places.
-std::uint32_t spread(std::uint32_t x) {
-  x = (x | (x << 4)) & 0x0f0fu;
-  x = (x | (x << 2)) & 0x3333u;
-  return (x | (x << 1)) & 0x5555u;
-}
 
 }  // namespace
 
@@ -57,7 +43,7 @@ float netStandardError(std::span<const float> values, std::span<const std::uint1
   const float mean = sum / static_cast<float>(kept);
   const std::uint32_t shift_x = 8 - (bits + 1) / 2, shift_y = 8 - bits / 2;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t x = compact(codes[i] >> 1u) >> shift_x, y = compact(codes[i]) >> shift_y;
+    const std::uint32_t x = compactBits(codes[i] >> 1u) >> shift_x, y = compactBits(codes[i]) >> shift_y;
     scratch[y * width + x] = values[i] < 0.0f ? 0.0f : values[i] - mean;
   }
   float squares = 0.0f;
@@ -89,7 +75,7 @@ void addNetVariances(std::span<const float> values, std::span<const float, 16> m
   const std::uint32_t shift_x = bits % 2 == 0 ? 1 : 0;
   const auto slot = [&](std::uint32_t x, std::uint32_t y) {
     return scratch.data() +
-           static_cast<std::size_t>((spread(x) << shift_x) | (spread(y) << (1 - shift_x))) * kColumns;
+           static_cast<std::size_t>((spreadBits(x) << shift_x) | (spreadBits(y) << (1 - shift_x))) * kColumns;
   };
   std::array<float, kColumns> squares{};
   for (std::uint32_t y = 0; y + 1 < height; ++y) {

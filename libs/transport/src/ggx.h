@@ -6,6 +6,9 @@
 
 namespace relume::transport::ggx {
 
+inline constexpr float kLeastAlpha = 1e-3f;  ///< a mirror is a very sharp lobe
+inline constexpr float kDielectric = 0.04f;  ///< F0 of index 1.5 ([glTF])
+
 /// D(h) ([glTF] B.3.2); h unit, h.z > 0.
 float distribution(Vec3 h, float alpha);
 /// Smith's G1 of one direction.
@@ -19,6 +22,10 @@ Vec3 sampleVisibleNormal(Vec3 o, float alpha, Vec2 u);
 /// perfect reflector. From a table of 32 x 32 made at first use; look-ups are right to 0.005.
 struct Reflected {
   float scale, bias;
+  /// Stands for light that microfacets reflect more than once ([Tur19] 16).
+  Vec3 compensation(Vec3 f0) const { return Vec3(1.0f) + f0 * (1 / (scale + bias) - 1); }
+  /// Of the compensated lobe.
+  Vec3 albedo(Vec3 f0) const { return (f0 * scale + bias) * compensation(f0); }
 };
 Reflected reflected(float cos_o, float alpha);
 

@@ -81,7 +81,6 @@ void LightTree::Node::importances(Point p, Normal n, float* result) const {
 LightTree::LightTree(std::span<const EmitterBounds> emitters) : leaf_of_(emitters.size()) {
   const std::vector<LightGroup> groups = lightHierarchy(emitters);
   if (groups.empty()) return;
-  whole_ = groups[0].bounds;
   // Groups are opened, the costliest first, until a node is full.
   struct Open {
     std::uint32_t group, parent, slot;

@@ -39,8 +39,6 @@ class LightTree {
   explicit LightTree(std::span<const EmitterBounds> emitters);
 
   bool empty() const { return nodes_.empty(); }
-  /// Estimated irradiance from all of them.
-  float importance(Point p, Normal n) const { return empty() ? 0.0f : whole_.importance(p, n); }
   /// u in [0, 1).
   Choice choose(Point p, Normal n, float u) const;
   float probability(Point p, Normal n, std::uint32_t emitter) const;
@@ -67,7 +65,6 @@ class LightTree {
   };
 
   std::vector<Node> nodes_;
-  EmitterBounds whole_;
   std::vector<Leaf> leaf_of_;  ///< by emitter
 };
 

@@ -17,6 +17,7 @@
 #include "relume/core/frame.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
+#include "relume/transport/occlusion.h"
 #include "texel_groups.h"
 
 namespace relume::transport {
@@ -28,7 +29,6 @@ constexpr float kLift = 0.25f;        // texels: lower things do not part a texe
 constexpr float kGap = 1.0f / 16;     // texels: what has less room above it is covered
 constexpr float kFoldCosine = 0.97f;  // faces that look different ways do not see each other, rightly
 constexpr float kShort = 0.999f;      // of the way between places, so that it ends before a surface there
-constexpr float kBuriedShare = 0.25f;
 constexpr std::uint32_t kBuriedRays = kMost;
 constexpr float kMuchDarker = 0.25f;
 

@@ -6,21 +6,16 @@
 
 #include "block_columns.h"
 #include "direction_batch.h"
+#include "morton.h"
 #include "relume/core/sampling.h"
 
 namespace relume::transport {
 namespace {
 
-std::uint32_t spread(std::uint32_t x) {
-  x = (x | (x << 4)) & 0x0f0fu;
-  x = (x | (x << 2)) & 0x3333u;
-  return (x | (x << 1)) & 0x5555u;
-}
-
 /// Where a point of a net of `count` lies along the Morton curve; each has a slot of its own.
 std::uint32_t slotOf(float x, float y, std::uint32_t count) {
-  const std::uint32_t code =
-      (spread(static_cast<std::uint32_t>(x * 256.0f)) << 1) | spread(static_cast<std::uint32_t>(y * 256.0f));
+  const std::uint32_t code = (spreadBits(static_cast<std::uint32_t>(x * 256.0f)) << 1) |
+                             spreadBits(static_cast<std::uint32_t>(y * 256.0f));
   return code >> (kCodeBits - static_cast<std::uint32_t>(std::countr_zero(count)));
 }
 

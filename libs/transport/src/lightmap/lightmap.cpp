@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "direction_batch.h"
 #include "error_estimate.h"
@@ -18,6 +19,7 @@
 #include "radiosity/radiosity.h"
 #include "relume/core/check.h"
 #include "relume/core/parallel.h"
+#include "relume/transport/occlusion.h"
 
 namespace relume::transport {
 namespace {
@@ -28,6 +30,9 @@ constexpr float kDarkest = 0.25f;
 // Of the scene's mean, what may come through the cracks of a closed body.
 constexpr float kNoLight = 1e-4f;
 constexpr std::uint32_t kLeastLightSamples = 4;  // of a texel, for the cache
+
+/// Light samples of a first round; of gather rays these are min_samples.
+std::uint32_t leastLights(const LightmapOptions& options) { return std::max(options.min_samples / 2, 4u); }
 
 /// The means of the samples of a group's texels, round by round, and how far they may be off.
 class Estimate {
@@ -113,7 +118,7 @@ class GroupSolver {
     std::iota(all_.begin(), all_.end(), 0u);
     const float allowed = squaredTolerance(group);
     if (shared_.direct())
-      sample(lightMinimum(), allowed, light_, [&](auto first, auto count) {
+      sample(leastLights(options_), allowed, light_, [&](auto first, auto count) {
         light_rays_.trace(rays_, all_, first, count,
                           [&](std::uint32_t texel, std::uint32_t sample, Vec3 irradiance, float) {
                             values_[std::size_t{sample} * kColumns + texel] += irradiance;
@@ -133,8 +138,6 @@ class GroupSolver {
   }
 
  private:
-  std::uint32_t lightMinimum() const { return std::max(options_.min_samples / 2, 4u); }
-
   /// Rounds of samples until the group is good enough as a whole. A texel that stopped for itself would stop
   /// when chance has shown it too little light to make a variance: the means came out 3 % too low in a Menger
   /// sponge under the sky.
@@ -208,8 +211,8 @@ struct LightmapSolver::Impl {
         groups(texels),
         first(options.target_error > 0.0f ? options.min_samples : options.max_samples),
         directions(first, options.max_samples, options.seed, sharing()),
-        lights(options.target_error > 0.0f ? std::max(options.min_samples / 2, 4u) : options.max_samples,
-               options.max_samples, options.seed, sharing()) {}
+        lights(options.target_error > 0.0f ? leastLights(options) : options.max_samples, options.max_samples,
+               options.seed, sharing()) {}
 
   BlockSamples sharing() const { return options.smoothed ? BlockSamples::kShared : BlockSamples::kSeparate; }
 
@@ -238,7 +241,7 @@ struct LightmapSolver::Impl {
     exposure->preferDark(all);
     double sum = 0, area = 0;
     for (std::uint32_t i = 0; i < texels.points.size(); ++i) {
-      if (cache->backShare(i) > 0.25f) continue;
+      if (cache->backShare(i) > kBuriedShare) continue;
       Vec3 own(0.0f);
       if (options.part != Part::kIndirect) own += cache->direct(i);
       if (options.part != Part::kDirect) own += cache->indirect(i);
@@ -246,6 +249,8 @@ struct LightmapSolver::Impl {
       sum += weight * static_cast<double>(luminance(own)), area += weight;
     }
     mean = area > 0 ? static_cast<float>(sum / area) : 0.0f;
+    shared.emplace(
+        Shared{tracer, texels, options, emitters, lookup, directions, lights, *exposure, *cache, mean});
   }
 
   const trace::Tracer& tracer;
@@ -260,6 +265,9 @@ struct LightmapSolver::Impl {
   std::unique_ptr<Exposure> exposure;
   std::unique_ptr<RadianceCache> cache;
   float mean = 0;
+  std::optional<Shared> shared;  // of what stands above; made with the cache
+  SolverPool<GroupSolver> gatherers;
+  SolverPool<PathGroup> walkers;
 };
 
 LightmapSolver::LightmapSolver(const trace::Tracer& tracer, const atlas::Atlas& atlas,
@@ -278,7 +286,7 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
   // For paths too: what is found there says which part of a texel counts.
   const bool first = !impl_->cache;
   impl_->fillCache(progress);
-  const Impl& impl = *impl_;
+  Impl& impl = *impl_;
   LightmapResult result;
   const std::size_t count = which.empty() ? impl.texels.points.size() : which.size();
   result.value.resize(count), result.error.resize(count), result.back_share.resize(count);
@@ -289,15 +297,11 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
                                          impl.directions, *impl.exposure, std::min(impl.first, kMaxBatch),
                                          impl.options);
     };
-    SolverPool<PathGroup> pool;
-    result.rays = solveGroups(impl.groups, impl.texels, which, progress, pool, make, solve);
+    result.rays = solveGroups(impl.groups, impl.texels, which, progress, impl.walkers, make, solve);
     return result;
   }
-  const Shared shared{impl.tracer,     impl.texels, impl.options,   impl.emitters, impl.lookup,
-                      impl.directions, impl.lights, *impl.exposure, *impl.cache,   impl.mean};
-  const auto make = [&] { return std::make_unique<GroupSolver>(shared); };
-  SolverPool<GroupSolver> pool;
-  result.rays = solveGroups(impl.groups, impl.texels, which, progress, pool, make, solve);
+  const auto make = [&] { return std::make_unique<GroupSolver>(*impl.shared); };
+  result.rays = solveGroups(impl.groups, impl.texels, which, progress, impl.gatherers, make, solve);
   if (first) result.rays += impl.cache->rays();
   return result;
 }

@@ -9,12 +9,11 @@
 #include "lightmap/reflectance.h"
 #include "lightmap/substitutes.h"
 #include "relume/core/parallel.h"
+#include "relume/transport/occlusion.h"
 
 namespace relume::transport {
 namespace {
 
-// A texel of which so many rays meet the back of a face is inside something, in part at least.
-constexpr float kBuriedShare = 0.25f;
 // Light is handed on until what is still to come is this share of all light.
 constexpr double kConverged = 1e-4;
 constexpr int kMostBounces = 4096;

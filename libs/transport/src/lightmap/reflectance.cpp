@@ -9,19 +9,10 @@
 namespace relume::transport {
 namespace {
 
-constexpr float kDielectric = 0.04f;
-
-/// Means over cosine-weighted directions, by index of roughness: of the lobe's share with that Fresnel factor
-/// and of the factor that stands for light that microfacets reflect more than once (bsdf.h).
-struct Means {
-  float scale = 0, bias = 0;
-  Vec3 compensation(Vec3 f0) const { return Vec3(1.0f) + f0 * (1.0f / std::max(scale + bias, 1e-3f) - 1.0f); }
-  Vec3 share(Vec3 f0) const { return compensation(f0) * (f0 * scale + Vec3(bias)); }
-};
-
-std::vector<Means> meansByRoughness() {
+/// Means over cosine-weighted directions, by index of roughness.
+std::vector<ggx::Reflected> meansByRoughness() {
   constexpr int kSteps = 64;
-  std::vector<Means> means(GlossTable::kRoughnesses);
+  std::vector<ggx::Reflected> means(GlossTable::kRoughnesses, ggx::Reflected{0, 0});
   for (std::size_t r = 0; r < means.size(); ++r)
     for (int i = 0; i < kSteps; ++i) {
       // cos^2 is uniform.
@@ -52,7 +43,7 @@ std::uint8_t GlossTable::indexOf(float roughness) {
 }
 float GlossTable::alphaOf(std::uint8_t index) {
   const float roughness = static_cast<float>(index) / (kRoughnesses - 1);
-  return std::max(roughness * roughness, 1e-3f);
+  return std::max(roughness * roughness, ggx::kLeastAlpha);
 }
 GlossTable::GlossTable(const std::vector<float>& cosines) : count_(cosines.size()) {
   values_.reserve(kRoughnesses * count_);
@@ -64,7 +55,8 @@ GlossTable::GlossTable(const std::vector<float>& cosines) : count_(cosines.size(
 std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Texels& texels,
                                       Materials materials) {
   std::vector<Reflectance> result(texels.points.size());
-  const std::vector<Means> means = materials == Materials::kFull ? meansByRoughness() : std::vector<Means>();
+  const std::vector<ggx::Reflected> means =
+      materials == Materials::kFull ? meansByRoughness() : std::vector<ggx::Reflected>();
   parallelFor(result.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const atlas::SurfacePoint& point = texels.points[i];
@@ -81,10 +73,10 @@ std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Te
       const scene::Surface surface =
           look ? scene::surfaceAt(scene, hit) : scene::Surface{Vec4(1), 0, material.roughness, {}};
       r.roughness = GlossTable::indexOf(surface.roughness);
-      const Means& mean = means[r.roughness];
-      const Vec3 coat(kDielectric), metal(surface.base_colour);
+      const ggx::Reflected& mean = means[r.roughness];
+      const Vec3 coat(ggx::kDielectric), metal(surface.base_colour);
       const float m = surface.metallic;
-      r.diffuse *= Vec3(1.0f) - mean.share(coat);
+      r.diffuse *= Vec3(1.0f) - mean.albedo(coat);
       r.scale = (1.0f - m) * mean.compensation(coat) * coat + m * mean.compensation(metal) * metal;
       r.bias = (1.0f - m) * mean.compensation(coat) + m * mean.compensation(metal);
       if (!material.normal_texture) continue;

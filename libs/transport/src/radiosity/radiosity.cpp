@@ -12,12 +12,11 @@
 #include "radiosity/texel_light.h"
 #include "relume/core/check.h"
 #include "relume/core/parallel.h"
+#include "relume/transport/occlusion.h"
 
 namespace relume::transport {
 namespace {
 
-// A texel of which so many rays meet the back of a face is inside something, in part at least.
-constexpr float kBuriedShare = 0.25f;
 constexpr std::size_t kGrain = 256;  // patches
 
 /// Of each texel, for light that comes evenly from everywhere; and the factor for direct light (Reflectance).

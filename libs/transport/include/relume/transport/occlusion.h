@@ -35,6 +35,11 @@ struct DistanceWeight {
   float operator()(float distance) const;
 };
 
+/// A texel of which more rays than this share meet the back of a face lies, in part at least, inside
+/// geometry. What the buried part does not see would darken the part that shows: a row of dark dots where
+/// bodies meet.
+inline constexpr float kBuriedShare = 0.25f;
+
 enum class OcclusionKind : std::uint8_t { kScalar, kSpectral };
 
 struct OcclusionOptions {
