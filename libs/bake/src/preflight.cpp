@@ -1,33 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <chrono>
-
+#include "forecast.h"
 #include "prepared.h"
 #include "relume/core/memory.h"
 #include "scene_digest.h"
 #include "texel_store.h"
 
 namespace relume::bake {
-namespace {
-
-constexpr std::size_t kPilotTexels = 512;
-
-// Seconds to compute `pending`, from a few of them spread evenly.
-double forecastSeconds(const TexelSolver& solver, const std::vector<std::uint32_t>& pending) {
-  if (pending.empty()) return 0;
-  const std::size_t count = std::min(kPilotTexels, pending.size());
-  std::vector<std::uint32_t> pilot(count);
-  for (std::size_t i = 0; i < count; ++i) pilot[i] = pending[i * pending.size() / count];
-  std::vector<float> rows(count * static_cast<std::size_t>(solver.row));
-  SilentProgress silent;
-  const auto start = std::chrono::steady_clock::now();
-  solver.solve(pilot, rows, silent);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return seconds * static_cast<double>(pending.size()) / static_cast<double>(count);
-}
-
-}  // namespace
-
 Preflight preflight(const scene::gltf::Document& document, const BakeOptions& options, Progress& progress) {
   Preflight result;
   Statistics statistics;
@@ -56,7 +34,11 @@ Preflight preflight(const scene::gltf::Document& document, const BakeOptions& op
     Preflight::Layer plan{
         .name = layer.name, .parameters = layer.parameters, .reusable_texels = store.reused()};
     plan.stale_because = store.staleBecause();
-    plan.forecast_seconds = forecastSeconds(job.solver, store.pending());
+    const std::vector<std::uint32_t> pending = store.pending();
+    {
+      const Stage stage(progress, "pilot of " + layer.name, pending.size());
+      plan.forecast_seconds = forecastSeconds(job.solver, p.texels, pending, progress);
+    }
     result.forecast_seconds += plan.forecast_seconds;
     result.layers.push_back(std::move(plan));
   }
