@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Light path maps: how light that falls on a few entries of a scene's surfaces arrives, after any number of
+// reflections, at its exits. For irradiance E_e on entry e the indirect irradiance at exit x is
+//   I_x = sum_e T_xe E_e,
+// by colour channel; light that arrives at x straight from a light is not in it. Based on:
+//   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer. Sections 5 to 7 and 10.
+// Differs from it: an entry is a patch of surface and not a point, so that T has no spikes and no path is too
+// short to count; irradiance on it is a mean over fixed places; T comes from radiosity over small elements
+// and rays that gather at the exits instead of random walks from the entries (docs/light-paths.md has both
+// measured). EntryPlacement::kShot is the paper's form. Conventions: docs/concept.md. Light leaves surfaces
+// as from ideal diffuse reflectors, on both sides, as in lightmap.h. Limits: static surfaces only.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "relume/atlas/atlas.h"
+#include "relume/atlas/texels.h"
+#include "relume/core/light.h"
+#include "relume/core/progress.h"
+#include "relume/trace/tracer.h"
+#include "relume/transport/reference.h"
+
+namespace relume::transport {
+
+enum class EntryPlacement : std::uint8_t {
+  kPatches,  ///< the whole surface in patches of about equal area, none behind a wall that another part faces
+  kShot,     ///< points that rays hit from where lights may be; T_e / d(e) of [USKP09] 7.1
+};
+
+struct LightPathOptions {
+  EntryPlacement placement = EntryPlacement::kPatches;
+  std::uint32_t entries = 1024;      ///< about so many; a few more where walls divide patches
+  std::uint32_t entry_samples = 16;  ///< places on an entry where its irradiance is taken; kShot: 1
+  std::uint32_t elements = 8192;     ///< of radiosity, about so many
+  std::uint32_t element_rays = 512;  ///< of an element, at least
+  std::uint32_t exit_side = 4;       ///< texels along an exit, which is a block of one chart; 1 to 64
+  std::uint32_t exit_rays = 1024;    ///< of an exit, rounded up to 2^k for each of its texels
+  std::uint32_t tile_exits = 256;    ///< exits of a tile, on average, without overlap
+  float tile_overlap = 0.3f;         ///< exits that a tile shares with its neighbours, as a share of its own
+  Materials materials = Materials::kFull;
+  std::vector<Box3> light_boxes;  ///< where lights may be; none: all of the free space between surfaces
+  std::uint64_t seed = 1;
+};
+
+/// A place where the irradiance on an entry is taken.
+struct EntrySample {
+  Point position{0};       ///< on the surface, world
+  Normal normal{0, 0, 1};  ///< shading normal on the lit side, unit
+};
+
+struct Entries {
+  std::uint32_t samples_each = 1;
+  std::vector<EntrySample> samples;  ///< shape: [entries][samples_each]; equal shares of an entry's area
+  std::vector<float> area;           ///< m^2, by entry; kShot: 1 / d(e), which T holds already
+  std::vector<Point> centre;         ///< by entry: mean position, not always on the surface
+  std::vector<Normal> normal;        ///< by entry: mean normal, unit
+  std::size_t size() const { return area.size(); }
+};
+
+/// A block of texels of one chart that share a value.
+struct Exit {
+  std::uint32_t chart = 0, page = 0;
+  std::uint32_t x = 0, y = 0;  ///< of the block in its page, in blocks
+  Point position{0};           ///< in the middle, on the surface
+  Normal normal{0, 0, 1};
+  float area = 0;  ///< m^2
+};
+
+struct Exits {
+  std::uint32_t side = 0;  ///< texels along a block
+  std::vector<Exit> all;   ///< by page, row and column of blocks
+  /// By index into Texels::points. Two exits can share a block of a chart, where it goes round an edge.
+  std::vector<std::uint32_t> of_texel;
+  std::size_t size() const { return all.size(); }
+};
+
+/// Groups of exits that lie together in space and face alike, whatever their charts; they overlap, and blend
+/// weights of an exit sum to 1 over its tiles. As codec::RowTiles.
+struct ExitTiles {
+  std::vector<std::uint32_t> first;  ///< shape: [tiles + 1], into row and blend
+  std::vector<std::uint32_t> row;    ///< exits, increasing within a tile
+  std::vector<float> blend;          ///< in (0, 1]
+  std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
+};
+
+/// Where a test light may stand.
+struct LightPlaces {
+  float nearest = 0.0f;        ///< metres to any surface, at least
+  float farthest = kInfinity;  ///< and at most
+  float spots = 0.0f;          ///< share of spot lights, the rest are point lights
+};
+
+/// What lights an exit in LightPaths::irradiance.
+enum class LitBy : std::uint8_t {
+  kEntries,   ///< irradiance taken at the samples of entries, as at run time
+  kElements,  ///< irradiance on each small piece of surface by rays of its own: no entries
+};
+
+class LightPaths {
+ public:
+  /// Places entries and exits and solves what elements send out. Keeps references. Bits do not depend on the
+  /// number of threads. Throws Error kUsage for options that make no sense, kEmptyScene where there are no
+  /// texels, kInterrupted.
+  LightPaths(const trace::Tracer& tracer, const atlas::Atlas& atlas, const atlas::Texels& texels,
+             const LightPathOptions& options, Progress& progress);
+  ~LightPaths();
+  LightPaths(LightPaths&&) noexcept;
+
+  const Entries& entries() const;
+  const Exits& exits() const;
+  const ExitTiles& tiles() const;
+  float spacing() const;        ///< metres: side of a square of an entry's mean area
+  std::uint64_t bytes() const;  ///< of memory held, about
+  std::uint64_t rays() const;   ///< traced while solving
+
+  /// The transfer to the exits of a tile, not blended. out: shape [rows of tile][3 channels][entries].
+  /// From many threads at once; the same bits every time.
+  void rows(std::size_t tile, std::span<float> out) const;
+
+  /// White point and spot lights of intensity 1 in free space, in `light_boxes` where there are any. Fewer
+  /// than `count`, perhaps none, where such places are hard to find.
+  LightSet lights(std::uint32_t count, const LightPlaces& places, std::uint64_t seed,
+                  Progress& progress) const;
+  /// Irradiance on entries with shadow rays, of lights as if their colour were 1. Shape: [lights][entries].
+  std::vector<float> entryIrradiance(std::span<const Light> lights, Progress& progress) const;
+
+  /// Indirect irradiance at exits, colours of lights included, by the same gather rays as rows(): what parts
+  /// the error of entries from that of all else. Shape: [lights][exits].
+  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by, Progress& progress) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relume::transport
