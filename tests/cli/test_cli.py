@@ -256,6 +256,14 @@ class Bake(CliTest):
         self.assertIn("card 0", points[0])
         self.assertIn("and 3 more", points[0])
 
+    def test_a_bake_of_visibility_alone_reads_no_colours(self):
+        def planes(*layers):
+            self.bake(*(word for layer in layers for word in ("--layer", layer)))
+            return [plane["name"] for plane in glb.read_glb(self.baked)[0]["extensions"]["RELUME_transfer"]["atlas"]["planes"]]
+        self.assertNotIn("sqrtAlbedo", planes("ao"))
+        self.assertIn("sqrtAlbedo", planes("ao:correction=jimenez"))
+        self.assertIn("sqrtAlbedo", planes("ao", "obscurance"))
+
     def test_dry_run_tells_and_bakes_nothing(self):
         said = relume("bake", self.scene, "-o", self.baked, "--dry-run", "--atlas-size", 128).stdout
         for text in ("texels per metre", "forecast", "mean stretch", "obscurance"):

@@ -107,6 +107,12 @@ std::vector<std::uint8_t> encodeAlbedo(const std::vector<Vec3>& albedo) {
   return q;
 }
 
+bool hasPlane(const JsonNode& atlas, const char* name) {
+  for (const JsonNode& plane : atlas.at("planes").items())
+    if (ArrayReader::info(plane).name == name) return true;
+  return false;
+}
+
 template <class T>
 std::vector<T> readPlane(const JsonNode& atlas, ArrayReader& reader, const char* name, const char* storage,
                          std::size_t channels, std::size_t count) {
@@ -130,7 +136,7 @@ Json encodeAtlas(const AtlasTable& atlas, ArrayWriter& writer) {
   const std::size_t count = atlas.texel.size();
   RELUME_CHECK_EQ(atlas.position.size(), count);
   RELUME_CHECK_EQ(atlas.normal.size(), count);
-  RELUME_CHECK_EQ(atlas.albedo.size(), count);
+  if (!atlas.albedo.empty()) RELUME_CHECK_EQ(atlas.albedo.size(), count);
   RELUME_CHECK_EQ(atlas.valid.size(), count);
   RELUME_CHECK_EQ(atlas.chart.size(), count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -149,7 +155,8 @@ Json encodeAtlas(const AtlasTable& atlas, ArrayWriter& writer) {
   planes.push_back(writer.write("texel", "uint32", atlas.texel, 1));
   planes.push_back(writer.write("position", "uint32", encodePositions(atlas.position, grid), 3));
   planes.push_back(writer.write("normal", "uint16", encodeNormals(atlas.normal), 2));
-  planes.push_back(writer.write("sqrtAlbedo", "uint8", encodeAlbedo(atlas.albedo), 3));
+  if (!atlas.albedo.empty())
+    planes.push_back(writer.write("sqrtAlbedo", "uint8", encodeAlbedo(atlas.albedo), 3));
   planes.push_back(writer.write("valid", "uint8", atlas.valid, 1));
   planes.push_back(writer.write("chart", "uint32", atlas.chart, 1));
   return json;
@@ -189,11 +196,13 @@ AtlasTable decodeAtlas(const JsonNode& node, ArrayReader& reader) {
     atlas.normal[i] = decodeNormal(normals[2 * i], normals[2 * i + 1]);
   }
 
-  const auto albedo = readPlane<std::uint8_t>(node, reader, "sqrtAlbedo", "uint8", 3, count);
-  atlas.albedo.resize(count);
-  for (std::size_t i = 0; i < 3 * count; ++i) {
-    const float root = codec::floatFromUnorm8(albedo[i], 0, 1);
-    atlas.albedo[i / 3][static_cast<int>(i % 3)] = root * root;
+  if (hasPlane(node, "sqrtAlbedo")) {
+    const auto albedo = readPlane<std::uint8_t>(node, reader, "sqrtAlbedo", "uint8", 3, count);
+    atlas.albedo.resize(count);
+    for (std::size_t i = 0; i < 3 * count; ++i) {
+      const float root = codec::floatFromUnorm8(albedo[i], 0, 1);
+      atlas.albedo[i / 3][static_cast<int>(i % 3)] = root * root;
+    }
   }
   atlas.valid = readPlane<std::uint8_t>(node, reader, "valid", "uint8", 1, count);
   atlas.chart = readPlane<std::uint32_t>(node, reader, "chart", "uint32", 1, count);

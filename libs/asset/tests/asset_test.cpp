@@ -157,6 +157,14 @@ TEST(Asset, AxisNormalsAreExactAndAllOthersNear) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(got.atlas.normal[i], asset.atlas.normal[i]) << i;
 }
 
+TEST(Asset, ABakeOfVisibilityHasNoAlbedo) {
+  Asset asset = exampleAsset();
+  asset.atlas.albedo.clear();
+  const Asset got = decode(encodeGlb(asset), "test.glb");
+  EXPECT_EQ(got.atlas.texel, asset.atlas.texel);
+  EXPECT_TRUE(got.atlas.albedo.empty());
+}
+
 TEST(Asset, FindsLayersAndPlanes) {
   const Asset asset = exampleAsset();
   EXPECT_EQ(asset.layer("").name, "obscurance");

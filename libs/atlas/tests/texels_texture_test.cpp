@@ -154,5 +154,28 @@ TEST(TexelsTexture, ATransparentTexelHasItsOwnColour) {
     EXPECT_NEAR(p.albedo.rgb.y, 0.2f, 1e-4f);
 }
 
+// A bake of visibility alone leaves the textures shut; the surfaces are the same to the last bit.
+TEST(TexelsTexture, WithoutMaterialsOnlyColoursAreMissing) {
+  HandMade made = texturedSquare(16, 64);
+  made.scene.materials[0].base_colour_texture.texture =
+      addTexture(made.scene, noise(64, 64, 7), false, scene::Wrap::kRepeat);
+  made.scene.materials[0].emission = Vec3(2);
+  SilentProgress silent;
+  const Texels with = rasterize(made.scene, made.atlas, silent);
+  const Texels without = rasterize(made.scene, made.atlas, silent, {.materials = false});
+  ASSERT_EQ(without.points.size(), with.points.size());
+  ASSERT_EQ(without.samples.size(), with.samples.size());
+  for (std::size_t i = 0; i < with.points.size(); ++i) {
+    const SurfacePoint &a = with.points[i], &b = without.points[i];
+    EXPECT_EQ(a.texel, b.texel);
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.shading_normal, b.shading_normal);
+    EXPECT_EQ(a.area, b.area);
+    EXPECT_EQ(a.sample_count, b.sample_count);
+    EXPECT_EQ(b.albedo.rgb, Vec3(0));
+    EXPECT_EQ(b.emission.rgb, Vec3(0));
+  }
+}
+
 }  // namespace
 }  // namespace relume::atlas

@@ -24,17 +24,18 @@ namespace {
 
 constexpr std::uint64_t kStoreLimit = std::uint64_t{2} << 30;  // bytes kept in the cache folder
 
-asset::AtlasTable tableOf(const atlas::Texels& texels) {
+asset::AtlasTable tableOf(const atlas::Texels& texels, bool materials) {
   asset::AtlasTable table{.width = texels.width, .height = texels.height, .pages = texels.pages};
   const std::size_t n = texels.points.size();
-  table.texel.resize(n), table.position.resize(n), table.normal.resize(n), table.albedo.resize(n),
-      table.chart.resize(n);
+  table.texel.resize(n), table.position.resize(n), table.normal.resize(n), table.chart.resize(n);
+  if (materials) table.albedo.resize(n);
   table.valid.assign(n, 1);
   parallelFor(n, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const atlas::SurfacePoint& p = texels.points[i];
       table.texel[i] = p.texel, table.chart[i] = p.chart;
-      table.position[i] = p.position, table.normal[i] = p.shading_normal, table.albedo[i] = p.albedo.rgb;
+      table.position[i] = p.position, table.normal[i] = p.shading_normal;
+      if (materials) table.albedo[i] = p.albedo.rgb;
     }
   });
   return table;
@@ -113,7 +114,7 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
 
   asset::Asset& asset = result.asset;
   asset.generator = std::string("relume ") + version();
-  asset.atlas = tableOf(p.texels);
+  asset.atlas = tableOf(p.texels, p.materials);
   Hasher input;
   input.add(p.structure);
   for (const Placement& placement : placements(p.scene)) input.add(placement.world_from_local);

@@ -42,6 +42,15 @@ bool seesNormalMaps(const LayerSpec& spec) {
   return find(spec.kind).has("materials") && (materials == spec.values.end() || materials->second == "full");
 }
 
+/// Albedo and emission are read from the textures only for those who use them: they take as long as all else
+/// that is known of a texel.
+bool seesMaterials(const PreparedLayer& layer) {
+  const auto correction = layer.parameters.find("correction");
+  const bool corrected =
+      correction != layer.parameters.end() && correction->second != asset::Parameter(std::string("none"));
+  return !layer.kind->visibility_alone || corrected;
+}
+
 /// A scene in which nothing shines gets a white sky: a black bake helps nobody.
 void requireLight(scene::Scene& scene, const std::vector<PreparedLayer>& layers, Warnings& warnings) {
   const auto needs = [](const PreparedLayer& layer) { return layer.kind->needs_light; };
@@ -105,7 +114,8 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
   stopwatch.lap("atlas");
   obeyMemoryLimit(options.max_memory);
 
-  p->texels = atlas::rasterize(p->scene, p->atlas, progress);
+  p->materials = std::any_of(p->layers.begin(), p->layers.end(), seesMaterials);
+  p->texels = atlas::rasterize(p->scene, p->atlas, progress, {.materials = p->materials});
   if (p->texels.points.empty())
     throw Error(ErrorCode::kEmptyScene, p->scene.name, "no triangle has an area",
                 "check the scale of the nodes and the positions");

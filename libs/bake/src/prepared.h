@@ -22,6 +22,7 @@ struct Prepared {
   scene::Scene scene;
   atlas::Atlas atlas;
   atlas::Texels texels;
+  bool materials = true;  ///< the texels know their albedo and emission
   std::unique_ptr<trace::Tracer> tracer;
   Digest structure;
   QualitySettings quality;

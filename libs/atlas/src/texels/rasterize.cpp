@@ -65,9 +65,10 @@ static_assert(sizeof(Place) == sizeof(std::uint64_t));
 
 class Raster {
  public:
-  Raster(const scene::Scene& scene, const Atlas& atlas)
+  Raster(const scene::Scene& scene, const Atlas& atlas, const RasterOptions& options)
       : scene_(scene),
         atlas_(atlas),
+        options_(options),
         triangles_(trianglesByChart(scene, atlas)),
         items_(workItems(triangles_)),
         kept_(items_.size()),
@@ -108,7 +109,8 @@ class Raster {
         [&](std::size_t begin, std::size_t end) {
           FragmentGrid grid;
           for (std::size_t i = begin; i < end; ++i) {
-            FootprintBuilder builder(scene_, uvOf(items_[i]), items_[i].chart, textures_);
+            FootprintBuilder builder(scene_, uvOf(items_[i]), items_[i].chart,
+                                     options_.materials ? &textures_ : nullptr);
             if (kept_[i].first.empty())
               fragmentsOf(triangles_, atlas_, items_[i].chart, items_[i].window, grid);
             else
@@ -192,6 +194,7 @@ class Raster {
 
   const scene::Scene& scene_;
   const Atlas& atlas_;
+  const RasterOptions& options_;
   ChartTriangles triangles_;
   std::vector<Item> items_;
   std::vector<FragmentGrid> kept_;  // by item; empty: none
@@ -203,14 +206,15 @@ class Raster {
 
 }  // namespace
 
-Texels rasterize(const scene::Scene& scene, const Atlas& atlas, Progress& progress) {
+Texels rasterize(const scene::Scene& scene, const Atlas& atlas, Progress& progress,
+                 const RasterOptions& options) {
   RELUME_CHECK_LE(atlas.texels(), std::size_t{scene::kNone});
   Texels texels;
   texels.width = atlas.width;
   texels.height = atlas.height;
   texels.pages = atlas.pages;
   for (const Chart& chart : atlas.charts) RELUME_CHECK_LT(chart.page, atlas.pages);
-  Raster raster(scene, atlas);
+  Raster raster(scene, atlas, options);
   const Stage stage(progress, "texels", 2 * raster.items());
   raster.claim(progress);
   raster.build(texels, progress);

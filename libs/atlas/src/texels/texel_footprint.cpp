@@ -65,15 +65,17 @@ bool TriangleMap::containsWell(DVec2 p) const {
 }
 
 FootprintBuilder::FootprintBuilder(const scene::Scene& scene, const InstanceUv& uv, std::uint32_t chart,
-                                   const MaterialTextures& textures)
+                                   const MaterialTextures* textures)
     : scene_(scene),
       uv_(uv),
       instance_(scene.instances[uv.instance]),
       mesh_(scene.meshes[instance_.mesh]),
       material_(scene.materials[mesh_.material]),
       chart_(chart),
-      texture_(textures.of(mesh_)),
+      shaded_(textures != nullptr),
+      texture_(shaded_ ? textures->of(mesh_) : nullptr),
       maps_(kMaps) {
+  if (!shaded_) return;
   textured_ =
       material_.base_colour_texture || material_.metallic_roughness_texture || material_.emission_texture;
   coloured_ = !mesh_.colours.empty();
@@ -354,7 +356,7 @@ SurfacePoint FootprintBuilder::build(int x, int y, std::span<const Fragment> fra
       addInterpolated(map, centre, 1.0, mean);
     }
     store(mean, point);
-  } else {
+  } else if (shaded_) {
     if (!constant_known_) {
       const scene::Surface surface =
           scene::surfaceAt(scene_, {uv_.instance, point.triangle, 1.0f / 3, 1.0f / 3});

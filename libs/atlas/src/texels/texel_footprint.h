@@ -36,8 +36,9 @@ struct TriangleMap {
 /// Makes the surface points of one chart. Not shared between threads.
 class FootprintBuilder {
  public:
+  /// Without `textures` nothing is read of materials.
   FootprintBuilder(const scene::Scene& scene, const InstanceUv& uv, std::uint32_t chart,
-                   const MaterialTextures& textures);
+                   const MaterialTextures* textures);
 
   /// fragments: of one chart in the square of texel (x, y), at least one. Sub-samples go to the end of
   /// `samples`, and `first_sample` counts from its beginning. `texel` is left to the caller.
@@ -88,7 +89,7 @@ class FootprintBuilder {
   const scene::Mesh& mesh_;
   const scene::Material& material_;
   std::uint32_t chart_;
-  bool textured_ = false, coloured_ = false;
+  bool shaded_ = false, textured_ = false, coloured_ = false;
   const MaterialTexture* texture_ = nullptr;  // of the material, where there can be one
   static constexpr std::uint32_t kMaps = 64;
   std::vector<TriangleMap> maps_;  // of triangles lately met, each at its number modulo kMaps

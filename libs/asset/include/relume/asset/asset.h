@@ -55,7 +55,7 @@ struct AtlasTable {
       texel;                    ///< (page * height + row) * width + column, increasing; row 0 is the top one
   std::vector<Point> position;  ///< world
   std::vector<Normal> normal;   ///< world, shading; unit length
-  std::vector<Vec3> albedo;     ///< diffuse albedo, linear, in [0, 1]
+  std::vector<Vec3> albedo;     ///< diffuse albedo, linear, in [0, 1]; empty in a bake of visibility alone
   std::vector<std::uint8_t> valid;  ///< 0: buried in geometry, its values were filled from neighbours
   std::vector<std::uint32_t> chart;
 

@@ -29,7 +29,7 @@ struct SurfacePoint {
   Vec3 dp_dx{0}, dp_dy{0};  ///< world metres per texel along the page's x and y
   float area = 0;           ///< m^2 of surface in the texel
   float coverage = 1;       ///< share of the texel's square that the chart covers, (0, 1]
-  Albedo albedo;            ///< mean over the opaque part of the footprint; emission too
+  Albedo albedo;            ///< mean over the opaque part of the footprint; emission too (see RasterOptions)
   Radiance emission;
   std::uint32_t first_sample = 0,
                 sample_count = 0;  ///< into Texels::samples; 0: wholly inside one flat triangle, so
@@ -47,10 +47,15 @@ struct Texels {
 /// of the square.
 Point footprintPosition(const Texels& texels, const SurfacePoint& point, Vec2 u);
 
+struct RasterOptions {
+  bool materials = true;  ///< false: albedo and emission stay 0, and no texture is read
+};
+
 /// Deterministic, whatever the number of threads. Of two charts that claim a texel, the one that covers more
 /// of it owns it (of equals the first), and its point is made from that chart alone. Where charts do not
 /// overlap, the areas of all points sum to the surface.
-Texels rasterize(const scene::Scene& scene, const Atlas& atlas, Progress& progress);
+Texels rasterize(const scene::Scene& scene, const Atlas& atlas, Progress& progress,
+                 const RasterOptions& options = {});
 
 /// A pair of texel footprints on the two sides of a chart edge that is one edge in space: within a mesh or
 /// between objects.

@@ -75,7 +75,8 @@ struct LayerKind {
   std::string emitters, transport, receivers, codec;
   std::vector<ParameterSpec> parameters;
   LayerJob (*prepare)(const LayerContext&, const Parameters&) = nullptr;
-  bool needs_light = false;  ///< of the scene's own lights and environment
+  bool needs_light = false;       ///< of the scene's own lights and environment
+  bool visibility_alone = false;  ///< what surfaces are made of does not matter, but to a correction
 
   bool has(std::string_view parameter) const;
 };
