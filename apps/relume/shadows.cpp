@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "shadows.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "relume/core/frame.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
 
@@ -20,12 +16,9 @@ float visibilityOf(const trace::Tracer& tracer, const Light& light, Point p, Nor
     return tracer.occluded({.origin = origin, .direction = -light.direction}, item) ? 0.0f : 1.0f;
   const bool area = light.kind == Light::Kind::kArea && light.area > 0;
   const std::uint32_t samples = area ? kAreaSamples : 1;
-  const float radius = area ? std::sqrt(light.area * kInvPi) : 0.0f;
-  const Frame frame = Frame::about(light.direction);
   std::uint32_t seen = 0;
   for (std::uint32_t s = 0; s < samples; ++s) {
-    const Vec2 d = area ? radius * squareToDisk(sobol2(s, item)) : Vec2(0);
-    const Vec3 to_light = light.position + frame.toWorld({d.x, d.y, 0}) - origin;
+    const Vec3 to_light = pointOn(light, sobol2(s, item)) - origin;
     const float distance = glm::length(to_light);
     if (!(distance > 0)) continue;
     const trace::Ray ray{.origin = origin, .direction = to_light / distance, .t_max = distance * 0.999f};

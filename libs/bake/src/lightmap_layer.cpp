@@ -63,6 +63,8 @@ void addLights(const scene::Scene& scene, Hasher& hasher) {
         .add(l.position)
         .add(l.direction)
         .add(l.area)
+        .add(l.two_sided)
+        .addAll(l.triangles)
         .add(l.angular_radius);
   const scene::Environment& e = scene.environment;
   hasher.add(e.radiance.rgb).add(e.rotation).add(e.map != nullptr);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relume/core/frame.h"
+#include "relume/core/sampling.h"
+
 namespace relume {
 namespace {
 
@@ -38,13 +41,37 @@ Irradiance incidentIrradiance(const Light& light, Point p) {
   const Vec3 strength = light.colour * light.intensity;
   if (light.kind == Light::Kind::kDirectional) return Irradiance(strength);
   const float r = distanceTo(light, p);
-  const float cos_light = glm::dot(light.direction, -directionTo(light, p));
+  float cos_light = glm::dot(light.direction, -directionTo(light, p));
+  if (light.kind == Light::Kind::kArea && light.two_sided) cos_light = std::abs(cos_light);
   if (light.kind == Light::Kind::kArea)
     return Irradiance(strength * (light.area * std::max(cos_light, 0.0f) / (r * r + light.area * kInvPi)));
   if (!(r > 0)) return Irradiance(0.0f);
   float factor = rangeWindow(r, light.range) / (r * r);
   if (light.kind == Light::Kind::kSpot) factor *= coneFactor(light, cos_light);
   return Irradiance(strength * factor);
+}
+
+Point pointOn(const Light& light, Vec2 u) {
+  if (light.kind != Light::Kind::kArea) return light.position;
+  if (light.triangles.empty()) {
+    const Vec2 d = std::sqrt(light.area * kInvPi) * squareToDisk(u);
+    const Frame frame = Frame::about(light.direction);
+    return light.position + d.x * frame.t + d.y * frame.b;
+  }
+  // u.x chooses the triangle; what it has left beyond the choice is uniform again.
+  const auto area = [](const std::array<Point, 3>& t) {
+    return 0.5f * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
+  };
+  float whole = 0;
+  for (const auto& t : light.triangles) whole += area(t);
+  float share = u.x * whole;
+  std::size_t k = 0;
+  for (; k + 1 < light.triangles.size() && share >= area(light.triangles[k]); ++k)
+    share -= area(light.triangles[k]);
+  const auto& [a, b, c] = light.triangles[k];
+  const float own = area(light.triangles[k]);
+  const float root = std::sqrt(own > 0 ? std::clamp(share / own, 0.0f, 1.0f) : 0.0f);
+  return a + root * (1 - u.y) * (b - a) + root * u.y * (c - a);
 }
 
 Irradiance directIrradiance(const Light& light, Point p, Normal n) {

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "relume/core/sampling.h"
+
 namespace relume {
 namespace {
 
@@ -52,6 +54,54 @@ TEST(LightTest, AreaLightIsExactOnTheAxisOfADisk) {
   EXPECT_NEAR(directIrradiance(disk, {0, 0, 0}, {0, 1, 0}).rgb.x,
               kPi * 3 * radius * radius / (radius * radius + height * height), 1e-5);
   EXPECT_EQ(directIrradiance(disk, {0, 1, 0}, {0, -1, 0}).rgb.x, 0);  // behind it
+}
+
+TEST(LightTest, AreaLightsMayShineToBothSides) {
+  Light disk{.kind = Light::Kind::kArea, .direction = {0, -1, 0}, .area = 1};
+  const float below = incidentIrradiance(disk, {0.3f, -1, 0}).rgb.x;
+  EXPECT_EQ(incidentIrradiance(disk, {0.3f, 1, 0}).rgb.x, 0);
+  disk.two_sided = true;
+  EXPECT_GT(below, 0);
+  EXPECT_EQ(incidentIrradiance(disk, {0.3f, -1, 0}).rgb.x, below);
+  EXPECT_EQ(incidentIrradiance(disk, {0.3f, 1, 0}).rgb.x, below);
+}
+
+// Two triangles of different size: first and second moments are those of the areas.
+TEST(LightTest, PlacesOnAPolygonAreEvenlySpread) {
+  Light light{.kind = Light::Kind::kArea};
+  light.triangles = {{Point(0, 0, 0), Point(2, 0, 0), Point(0, 1, 0)},
+                     {Point(2, 0, 0), Point(3, 2, 0), Point(0, 1, 0)}};
+  // Of each triangle: area, sum of corners / 3, and the second moment of x, area / 6 (sum of products).
+  double area = 0, x = 0, xx = 0, y = 0;
+  for (const auto& [a, b, c] : light.triangles) {
+    const double own = 0.5 * static_cast<double>(glm::length(glm::cross(b - a, c - a)));
+    area += own, x += own * (a.x + b.x + c.x) / 3.0, y += own * (a.y + b.y + c.y) / 3.0;
+    xx += own / 6.0 * (a.x * a.x + b.x * b.x + c.x * c.x + a.x * b.x + b.x * c.x + c.x * a.x);
+  }
+  constexpr std::uint32_t kPlaces = 1u << 14;
+  double mean_x = 0, mean_y = 0, mean_xx = 0;
+  for (std::uint32_t i = 0; i < kPlaces; ++i) {
+    const Point p = pointOn(light, sobol2(i, 7));
+    EXPECT_EQ(p.z, 0);
+    mean_x += p.x / kPlaces, mean_y += p.y / kPlaces, mean_xx += static_cast<double>(p.x) * p.x / kPlaces;
+  }
+  EXPECT_NEAR(mean_x, x / area, 1e-3);
+  EXPECT_NEAR(mean_y, y / area, 1e-3);
+  EXPECT_NEAR(mean_xx, xx / area, 2e-3);
+}
+
+TEST(LightTest, PlacesOnADiskAndOnAPoint) {
+  Light disk{.kind = Light::Kind::kArea, .position = {1, 2, 3}, .direction = {0, -1, 0}, .area = kPi};
+  double square = 0;
+  for (std::uint32_t i = 0; i < 4096; ++i) {
+    const Vec3 off = pointOn(disk, sobol2(i, 7)) - disk.position;
+    EXPECT_EQ(off.y, 0);
+    EXPECT_LE(glm::length(off), 1.0001f);
+    square += static_cast<double>(glm::dot(off, off)) / 4096;
+  }
+  EXPECT_NEAR(square, 0.5, 1e-3);
+  disk.kind = Light::Kind::kPoint;
+  EXPECT_EQ(pointOn(disk, {0.3f, 0.4f}), disk.position);
 }
 
 TEST(LightTest, DirectionalIsLuxEverywhere) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "relume/core/check.h"
-#include "relume/core/frame.h"
 #include "relume/core/sampling.h"
 
 namespace relume::picture {
@@ -71,8 +70,6 @@ void directIrradiance(const LayeredTracer& tracer, const LightSet& lights,
     if (!any) continue;
     const bool area = light.kind == Light::Kind::kArea && light.area > 0;
     const std::uint32_t shadow_samples = area ? kAreaSamples : 1;
-    const float radius = area ? std::sqrt(light.area * kInvPi) : 0.0f;
-    const Frame disk = Frame::about(light.direction);
     for (std::uint32_t k = 0; k < shadow_samples; ++k) {
       for (std::size_t i = 0; i < count; ++i) {
         const Receiver& r = receivers[i];
@@ -80,11 +77,8 @@ void directIrradiance(const LayeredTracer& tracer, const LightSet& lights,
         if (unshadowed[i].rgb == Vec3(0.0f)) continue;
         const std::uint32_t stream =
             streamOf(0, r.pixel, kFirstLightDimension + static_cast<std::uint32_t>(l));
-        Point target = light.position;
-        if (area) {
-          const Vec2 d = radius * squareToDisk(sobol2(r.sample * kAreaSamples + k, stream));
-          target += d.x * disk.t + d.y * disk.b;
-        }
+        const Point target =
+            area ? pointOn(light, sobol2(r.sample * kAreaSamples + k, stream)) : light.position;
         rays[i] = shadowRay(r, light, target);
         seeds[i] = hashCombine(stream, r.sample * kAreaSamples + k);
         // A light behind a flat surface is hidden by it; asking the tracer would leave that to rounding.

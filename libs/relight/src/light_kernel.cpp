@@ -38,7 +38,9 @@ void localFactors(const PreparedLight& l, const TexelBlock& t, Factors& out) {
     const float cos_light = -(l.direction.x * x + l.direction.y * y + l.direction.z * z) * inverse_r;
     float incident;
     if constexpr (kKind == Light::Kind::kArea) {
-      incident = l.area * (cos_light > 0 ? cos_light : 0.0f) / (r2 + l.area * kInvPi);
+      const float behind = -l.back * cos_light;
+      const float facing = cos_light > behind ? cos_light : behind;
+      incident = l.area * facing / (r2 + l.area * kInvPi);
     } else {
       const float q2 = r2 * l.inverse_range2;
       const float window = 1.0f - q2 * q2;
@@ -65,7 +67,8 @@ PreparedLight::PreparedLight(const Light& light)
       inverse_range2(light.range < kInfinity ? 1 / (light.range * light.range) : 0.0f),
       cos_outer(std::cos(light.outer_cone)),
       inverse_cone(1 / std::max(0.001f, std::cos(light.inner_cone) - std::cos(light.outer_cone))),
-      area(light.area) {}
+      area(light.area),
+      back(light.two_sided ? 1.0f : 0.0f) {}
 
 void addLight(const PreparedLight& light, const TexelBlock& texels, LightSums& sums) {
   Factors f;

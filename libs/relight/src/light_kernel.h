@@ -22,6 +22,7 @@ struct PreparedLight {
   float inverse_range2;  ///< 0: unlimited
   float cos_outer, inverse_cone;
   float area;
+  float back;  ///< of an area light: 1 where it shines to both sides, else 0
 };
 
 /// Texels [0, count) of a block, count <= kBlock.

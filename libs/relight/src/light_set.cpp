@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "relume/core/error.h"
+#include "relume/core/polygon.h"
 
 namespace relume::relight {
 namespace {
@@ -53,11 +54,23 @@ class LightReader {
   std::optional<Vec3> vector(const char* field, float lowest, float highest) const {
     const Json* value = find(field);
     if (!value) return {};
-    if (!value->is_array() || value->size() != 3) fail(field, "is not a list of 3 numbers");
-    Vec3 v;
-    for (std::size_t c = 0; c < 3; ++c)
-      v[static_cast<int>(c)] = *numberOf(&(*value)[c], fmt::format("{}[{}]", field, c), lowest, highest);
-    return v;
+    return vectorOf(*value, field, lowest, highest);
+  }
+
+  std::vector<Vec3> vectors(const char* field) const {
+    const Json* value = find(field);
+    if (!value->is_array()) fail(field, "is not a list");
+    std::vector<Vec3> list;
+    for (std::size_t i = 0; i < value->size(); ++i)
+      list.push_back(vectorOf((*value)[i], fmt::format("{}[{}]", field, i), -kMax, kMax));
+    return list;
+  }
+
+  bool flag(const char* field) const {
+    const Json* value = find(field);
+    if (!value) return false;
+    if (!value->is_boolean()) fail(field, "is not true or false");
+    return value->get<bool>();
   }
 
   Direction direction(const char* field) const {
@@ -100,6 +113,14 @@ class LightReader {
     return static_cast<float>(x);
   }
 
+  Vec3 vectorOf(const Json& value, const std::string& field, float lowest, float highest) const {
+    if (!value.is_array() || value.size() != 3) fail(field, "is not a list of 3 numbers");
+    Vec3 v;
+    for (std::size_t c = 0; c < 3; ++c)
+      v[static_cast<int>(c)] = *numberOf(&value[c], fmt::format("{}[{}]", field, c), lowest, highest);
+    return v;
+  }
+
   Json json_;
   std::string file_, where_;
 };
@@ -128,7 +149,10 @@ void allowOnlyFieldsOf(Light::Kind kind, const LightReader& reader) {
       return reader.allowOnly(
           {"type", "name", "color", "intensity", "direction", "position", "angularDiameter", "extras"});
     case Light::Kind::kArea:
-      return reader.allowOnly({"type", "name", "color", "intensity", "position", "normal", "area", "extras"});
+      return reader.find("vertices")
+                 ? reader.allowOnly({"type", "name", "color", "intensity", "vertices", "twoSided", "extras"})
+                 : reader.allowOnly({"type", "name", "color", "intensity", "position", "normal", "area",
+                                     "twoSided", "extras"});
   }
 }
 
@@ -148,6 +172,45 @@ float positive(const LightReader& reader, const char* field, float value) {
   return value;
 }
 
+void readDisk(const LightReader& reader, Light& light) {
+  light.direction = reader.direction("normal");
+  const auto area = reader.number("area", 0, LightReader::kMax);
+  if (!area) reader.fail("area", "is missing");
+  light.area = positive(reader, "area", *area);
+}
+
+void readPolygon(const LightReader& reader, Light& light) {
+  constexpr std::size_t kMostCorners = 1024;
+  constexpr double kFlat = 1e-3;  // how far a corner may be off the plane, in the root of the area
+  const std::vector<Point> corners = reader.vectors("vertices");
+  if (corners.size() < 3 || corners.size() > kMostCorners)
+    reader.fail("vertices", fmt::format("has {} corners, not from 3 to {}", corners.size(), kMostCorners));
+  const glm::dvec3 area = areaVector(corners);
+  const double size = glm::length(area);
+  light.area = static_cast<float>(size);
+  if (!(light.area > 0 && light.area < kInfinity))
+    reader.fail("vertices", "enclose no area that a number can tell");
+  light.direction = Direction(area / size);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const double off = glm::dot(glm::dvec3(corners[i]) - glm::dvec3(corners[0]), area / size);
+    if (std::abs(off) > kFlat * std::sqrt(size))
+      reader.fail(
+          "vertices",
+          fmt::format("do not lie in a plane: the one of index {} is {:.2g} m off it", i, std::abs(off)),
+          "make several lights of it");
+  }
+  light.triangles = triangulate(corners);
+  if (light.triangles.empty())
+    reader.fail("vertices", "make an outline that meets itself", "make several lights of it");
+  glm::dvec3 middle(0);
+  double whole = 0;
+  for (const auto& [a, b, c] : light.triangles) {
+    const double part = glm::length(areaVector(std::array{a, b, c}));
+    middle += part / 3 * (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)), whole += part;
+  }
+  light.position = Point(middle / whole);
+}
+
 Light readLight(const LightReader& reader) {
   constexpr float kMax = LightReader::kMax;
   Light light;
@@ -159,7 +222,7 @@ Light readLight(const LightReader& reader) {
   if (const auto range = reader.number("range", 0, kMax)) light.range = positive(reader, "range", *range);
   if (const auto position = reader.vector("position", -kMax, kMax)) {
     light.position = *position;
-  } else if (light.kind != Light::Kind::kDirectional) {
+  } else if (light.kind != Light::Kind::kDirectional && !reader.find("vertices")) {
     reader.fail("position", "is missing");
   }
   if (light.kind == Light::Kind::kSpot || light.kind == Light::Kind::kDirectional)
@@ -168,10 +231,8 @@ Light readLight(const LightReader& reader) {
   if (light.kind == Light::Kind::kDirectional)
     light.angular_radius = 0.5f * reader.number("angularDiameter", 0, kPi).value_or(0.0f);
   if (light.kind == Light::Kind::kArea) {
-    light.direction = reader.direction("normal");
-    const auto area = reader.number("area", 0, kMax);
-    if (!area) reader.fail("area", "is missing");
-    light.area = positive(reader, "area", *area);
+    light.two_sided = reader.flag("twoSided");
+    reader.find("vertices") ? readPolygon(reader, light) : readDisk(reader, light);
   }
   return light;
 }

@@ -56,6 +56,20 @@ TEST(ParseLights, ASunMayHaveASize) {
   EXPECT_FLOAT_EQ(lights[0].angular_radius, 0.00465f);
 }
 
+TEST(ParseLights, AnAreaLightMayBeAPolygon) {
+  const Light light = parseLights(R"([{"type": "area", "intensity": 5, "twoSided": true,
+      "vertices": [[0,3,0], [2,3,0], [2,3,1], [1,3,1], [1,3,3], [0,3,3]]}])",
+                                  "")[0];
+  EXPECT_EQ(light.kind, Light::Kind::kArea);
+  EXPECT_TRUE(light.two_sided);
+  EXPECT_FLOAT_EQ(light.area, 4.0f);
+  EXPECT_EQ(light.triangles.size(), 4u);
+  EXPECT_NEAR(glm::length(light.direction - Vec3(0, -1, 0)), 0, 1e-6f);  // counter-clockwise from below
+  EXPECT_NEAR(glm::length(light.position - Vec3(0.75f, 3, 1.25f)), 0, 1e-6f);
+  EXPECT_TRUE(parseLights(R"([{"type":"area","position":[0,0,0],"normal":[0,1,0],"area":1}])", "")[0]
+                  .triangles.empty());
+}
+
 TEST(ParseEnvironment, ConstantFileAndSky) {
   EXPECT_FALSE(parseEnvironment("[]", ""));
   EXPECT_FALSE(parseEnvironment(R"({"lights":[]})", ""));
@@ -125,7 +139,18 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{R"({"type":"spot","position":[0,0,0],"direction":[0,0,1],"spot":{"inner":1}})", ".spot.inner"},
         Bad{R"({"type":"area","position":[0,0,0],"area":1})", ".normal"},
         Bad{R"({"type":"area","position":[0,0,0],"normal":[0,1,0]})", ".area"},
-        Bad{R"({"type":"area","position":[0,0,0],"normal":[0,1,0],"area":0})", ".area"}));
+        Bad{R"({"type":"area","position":[0,0,0],"normal":[0,1,0],"area":0})", ".area"},
+        Bad{R"({"type":"area","position":[0,0,0],"normal":[0,1,0],"area":1,"twoSided":1})", ".twoSided"},
+        Bad{R"({"type":"area","vertices":3})", ".vertices"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[1,0,0]]})", ".vertices"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[1,0,0],[0,1]]})", ".vertices[2]"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[1,0,0],[0,1,"0"]]})", ".vertices[2][2]"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[1,0,0],[2,0,0]]})", ".vertices"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[2,2,0],[2,0,0],[0,1,0]]})", ".vertices"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[2,0,0],[2,2,0.5],[0,2,0]]})", ".vertices"},
+        Bad{R"({"type":"area","vertices":[[0,0,0],[1e30,0,0],[0,1e30,0]]})", ".vertices"},
+        Bad{R"({"type":"area","area":2,"vertices":[[0,0,0],[1,0,0],[0,1,0]]})", ".area"},
+        Bad{R"({"type":"point","position":[0,0,0],"twoSided":true})", ".twoSided"}));
 
 TEST(ParseLights, RefusesWhatIsNoList) {
   const auto code = [](const char* json) {

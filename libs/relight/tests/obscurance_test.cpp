@@ -68,6 +68,7 @@ LightSet randomLights(std::size_t count) {
     l.inner_cone = 0.5f * unit(random);
     l.outer_cone = 0.6f + unit(random) * 0.9f;
     l.area = unit(random);
+    l.two_sided = i % 8 >= 4;
   }
   return lights;
 }

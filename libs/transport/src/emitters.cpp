@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "environment_sampler.h"
+#include "light_shapes.h"
 #include "light_tree.h"
-#include "relume/core/frame.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
 #include "relume/trace/tracer.h"
@@ -29,33 +30,8 @@ struct Triangle {
   bool two_sided;
 };
 
-struct Disk {
-  Point centre;
-  Normal normal;
-  float radius;
-  Radiance radiance;
-  std::uint32_t light;  ///< index among local emitters
-};
-
-struct Sun {
-  Direction to_light;
-  float angular_radius;  ///< radians; 0: a delta light
-  Vec3 irradiance;       ///< facing it
-  bool delta() const { return angular_radius <= 0.0f; }
-  /// 1 - cos of the radius, without its cancellation.
-  float height() const {
-    const float s = std::sin(0.5f * angular_radius);
-    return 2.0f * s * s;
-  }
-  float sine() const { return std::sin(angular_radius); }
-  /// L = E / (pi sin^2 a): a disk of uniform radiance that gives E to a plane facing its centre.
-  Radiance radiance() const { return Radiance(irradiance * (kInvPi / (sine() * sine()))); }
-  float pdf() const { return 0.5f * kInvPi / height(); }
-  bool covers(Direction d) const {
-    const Vec3 apart = d - to_light;
-    return glm::dot(apart, apart) <= 2.0f * height();
-  }
-};
+/// A light: one without a size, or a shape that rays may meet.
+using Lamp = std::variant<const Light*, Disk, Panel>;
 
 float meanEmission(const scene::Scene& scene, const scene::Material& material, std::uint32_t instance,
                    std::uint32_t triangle) {
@@ -76,6 +52,7 @@ EmitterBounds boundsOf(const Light& light) {
   bounds.box.add(light.position);
   bounds.axis = light.direction;
   bounds.intensity = luminance(light.colour) * light.intensity;
+  bounds.two_sided = light.two_sided;
   switch (light.kind) {
     case Light::Kind::kPoint:
     case Light::Kind::kDirectional:
@@ -93,6 +70,16 @@ EmitterBounds boundsOf(const Light& light) {
       break;
     }
   }
+  return bounds;
+}
+
+EmitterBounds boundsOf(const Panel& panel) {
+  EmitterBounds bounds;
+  bounds.box.add(panel.v0), bounds.box.add(panel.v1), bounds.box.add(panel.v2);
+  bounds.axis = panel.normal;
+  bounds.two_sided = panel.two_sided;
+  bounds.intensity = luminance(panel.radiance.rgb) * 0.5f *
+                     glm::length(glm::cross(panel.v1 - panel.v0, panel.v2 - panel.v0));
   return bounds;
 }
 
@@ -116,13 +103,23 @@ struct Emitters::Impl {
         suns.push_back({-light.direction, std::min(light.angular_radius, kPi / 2), strength});
         continue;
       }
-      const auto index = static_cast<std::uint32_t>(local_lights.size());
+      const Radiance radiance(strength);
+      const auto shine = [&](Lamp lamp, EmitterBounds of_lamp) {
+        if (!std::holds_alternative<const Light*>(lamp))
+          shapes.push_back(static_cast<std::uint32_t>(lamps.size()));
+        lamps.push_back(lamp), bounds.push_back(of_lamp);
+      };
+      for (const auto& [a, b, c] : light.triangles) {
+        const Panel panel{a, b, c, light.direction, radiance, light.two_sided};
+        shine(panel, boundsOf(panel));
+      }
+      if (!light.triangles.empty()) continue;
       if (light.kind == Light::Kind::kArea)
-        disks.push_back(
-            {light.position, light.direction, std::sqrt(light.area * kInvPi), Radiance(strength), index});
-      local_lights.push_back(&light);
-      disk_of_light.push_back(static_cast<std::uint32_t>(disks.size()) - 1);
-      bounds.push_back(boundsOf(light));
+        shine(
+            Disk{light.position, light.direction, std::sqrt(light.area * kInvPi), radiance, light.two_sided},
+            boundsOf(light));
+      else
+        shine(&light, boundsOf(light));
     }
   }
 
@@ -162,13 +159,7 @@ struct Emitters::Impl {
   std::size_t distantCount() const { return suns.size() + (scene.environment.dark() ? 0 : 1); }
   float estimate(std::size_t distant, Normal n) const {
     if (distant == suns.size()) return kPi * environment.meanLuminance();
-    const Sun& sun = suns[distant];
-    if (n == Normal(0)) return luminance(sun.irradiance);
-    const float c = glm::dot(n, sun.to_light), s = std::sqrt(std::max(0.0f, 1.0f - c * c));
-    const float cos_radius = 1.0f - sun.height();
-    // The highest point of the disk.
-    const float highest = c >= cos_radius ? 1.0f : c * cos_radius + s * sun.sine();
-    return luminance(sun.irradiance) * std::max(highest, 0.0f);
+    return suns[distant].estimate(n);
   }
   /// Estimates of all distant emitters together, and how many are not dark.
   struct Distant {
@@ -188,43 +179,13 @@ struct Emitters::Impl {
     return distantAt(n).probability(estimate(distant, n));
   }
 
-  LightSample sampleSun(const Sun& sun, Vec2 u) const {
-    LightSample s;
-    s.endless = true;
-    s.direction = sun.to_light;
-    s.delta = sun.delta();
-    if (s.delta) {
-      s.value = sun.irradiance, s.pdf = 1.0f;
-      return s;
-    }
-    const float height = u.x * sun.height(), phi = 2 * kPi * u.y;
-    const float sine = std::sqrt(height * (2.0f - height));
-    s.direction =
-        Frame::about(sun.to_light).toWorld({sine * std::cos(phi), sine * std::sin(phi), 1.0f - height});
-    s.value = sun.radiance().rgb, s.pdf = sun.pdf();
-    return s;
-  }
-
   LightSample sampleLocal(std::uint32_t index, Point p, Vec2 u) const {
-    if (index >= local_lights.size())
-      return sampleTriangleLight(triangles[index - local_lights.size()], p, u);
-    const Light& light = *local_lights[index];
+    if (index >= lamps.size()) return sampleTriangleLight(triangles[index - lamps.size()], p, u);
+    const Lamp& lamp = lamps[index];
+    if (const auto* disk = std::get_if<Disk>(&lamp)) return disk->sample(p, u);
+    if (const auto* panel = std::get_if<Panel>(&lamp)) return panel->sample(p, u);
+    const Light& light = *std::get<const Light*>(lamp);
     LightSample s;
-    if (light.kind == Light::Kind::kArea) {
-      const Disk& disk = disks[disk_of_light[index]];
-      const Vec2 place = disk.radius * squareToDisk(u);
-      const Frame frame = Frame::about(disk.normal);
-      const Point q = disk.centre + place.x * frame.t + place.y * frame.b;
-      const float distance = glm::length(q - p);
-      if (!(distance > 0)) return s;
-      s.direction = (q - p) / distance;
-      s.end = q;
-      const float facing = -glm::dot(disk.normal, s.direction);
-      if (!(facing > 0)) return s;
-      s.value = disk.radiance.rgb;
-      s.pdf = distance * distance / (facing * kPi * disk.radius * disk.radius);
-      return s;
-    }
     s.delta = true;
     s.direction = directionTo(light, p);
     s.end = light.position;
@@ -253,10 +214,9 @@ struct Emitters::Impl {
   const scene::Scene& scene;
   EnvironmentSampler environment;
   std::vector<Sun> suns;
-  // Local emitters: first the lights, then the triangles; indices of the tree.
-  std::vector<const Light*> local_lights;
-  std::vector<std::uint32_t> disk_of_light;
-  std::vector<Disk> disks;
+  // Local emitters: first the lamps, then the triangles; indices of the tree.
+  std::vector<Lamp> lamps;
+  std::vector<std::uint32_t> shapes;  ///< lamps that rays may meet
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> first_triangle;  ///< by instance; kNone: does not emit
   std::unique_ptr<LightTree> tree;
@@ -277,7 +237,7 @@ bool Emitters::has(Reach reach) const {
 bool Emitters::emits(std::uint32_t instance) const { return impl_->first_triangle[instance] != scene::kNone; }
 bool Emitters::seenBesideSurfaces() const {
   const auto sized = [](const Sun& sun) { return !sun.delta(); };
-  return !impl_->disks.empty() || !impl_->scene.environment.dark() ||
+  return !impl_->shapes.empty() || !impl_->scene.environment.dark() ||
          std::any_of(impl_->suns.begin(), impl_->suns.end(), sized);
 }
 
@@ -302,7 +262,7 @@ LightSample Emitters::sample(Reach reach, Point p, Normal n, Vec2 u, float choic
   }
   if (!(probability > 0)) return s;
   if (distant < impl_->suns.size()) {
-    s = impl_->sampleSun(impl_->suns[distant], u);
+    s = impl_->suns[distant].sample(u);
   } else {
     s.direction = impl_->environment.sample(n, u);
     s.endless = true;
@@ -319,7 +279,7 @@ LightSeen Emitters::onSurface(Point p, Normal n, Direction d, const scene::Hit& 
   if (first == scene::kNone || back_face) return {};
   LightSeen seen{scene::surfaceAt(impl_->scene, hit).emission, 0.0f};
   const Triangle& t = impl_->triangles[first + hit.triangle];
-  const auto emitter = static_cast<std::uint32_t>(impl_->local_lights.size()) + first + hit.triangle;
+  const auto emitter = static_cast<std::uint32_t>(impl_->lamps.size()) + first + hit.triangle;
   if (const float chosen = impl_->tree->probability(p, n, emitter); chosen > 0)
     seen.pdf = chosen * trianglePdf(p, t.v0, t.v1, t.v2, d, distance);
   return seen;
@@ -327,15 +287,13 @@ LightSeen Emitters::onSurface(Point p, Normal n, Direction d, const scene::Hit& 
 
 void Emitters::onRay(Point p, Normal n, Direction d, float from, float to,
                      std::vector<LightSeen>& seen) const {
-  for (const Disk& disk : impl_->disks) {
-    const float facing = -glm::dot(disk.normal, d);
-    if (!(facing > 0)) continue;
-    const float t = -glm::dot(disk.normal, disk.centre - p) / facing;
-    if (!(t > from && t < to)) continue;
-    const Vec3 off = p + t * d - disk.centre;
-    if (glm::dot(off, off) > disk.radius * disk.radius) continue;
-    seen.push_back({disk.radiance, impl_->tree->probability(p, n, disk.light) * t * t /
-                                       (facing * kPi * disk.radius * disk.radius)});
+  const OpenRay ray{p, d, from, to};
+  for (const std::uint32_t lamp : impl_->shapes) {
+    const auto* disk = std::get_if<Disk>(&impl_->lamps[lamp]);
+    std::optional<LightSeen> light = disk ? disk->seen(ray) : std::get<Panel>(impl_->lamps[lamp]).seen(ray);
+    if (!light) continue;
+    light->pdf *= impl_->tree->probability(p, n, lamp);
+    seen.push_back(*light);
   }
   if (to < kInfinity) return;
   for (std::size_t i = 0; i < impl_->suns.size(); ++i) {

@@ -11,6 +11,7 @@
 
 #include "light_tree.h"
 #include "made_scenes.h"
+#include "relume/core/polygon.h"
 #include "relume/core/sampling.h"
 #include "relume/scene/sky.h"
 #include "relume/trace/tracer.h"
@@ -114,6 +115,86 @@ TEST(Emitters, ADiskOnItsAxis) {
   expectIrradiance(scene, {0, 0, 0}, {0, 0, 1}, 6.177288925597907);
 }
 
+/// Lambert's formula: irradiance at p of a flat polygon that is wholly above the horizon and shines with
+/// radiance 1; signed by its sense, so that it holds for outlines that are not convex too.
+double lambert(const std::vector<Point>& corners, Point p, Normal n) {
+  glm::dvec3 sum(0);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(glm::dvec3(corners[i] - p)),
+                     b = glm::normalize(glm::dvec3(corners[(i + 1) % corners.size()] - p));
+    sum += std::acos(glm::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::normalize(glm::cross(a, b));
+  }
+  return std::abs(0.5 * glm::dot(sum, glm::dvec3(n)));
+}
+
+const std::vector<Point> kL = {{-1, -1, 2}, {-1, 1, 2}, {0, 1, 2}, {0, 0, 2}, {2, 0, 2}, {2, -1, 2}};
+
+/// kL as a light that shines downwards.
+Light polygonLight(float radiance) {
+  Light light = lightOf(Light::Kind::kArea, radiance);
+  light.triangles = triangulate(kL), light.area = 4, light.direction = {0, 0, -1}, light.position = kL[0];
+  return light;
+}
+
+TEST(Emitters, PolygonsGiveLambertsFormula) {
+  scene::Scene scene;
+  scene.lights = {polygonLight(3)};
+  for (const Point p : {Point(0, 0, 0), Point(1.5f, 1.5f, 0.5f), Point(0.3f, 0.4f, 1.9f), Point(-20, 5, 1)}) {
+    expectIrradiance(scene, p, {0, 0, 1}, 3 * lambert(kL, p, {0, 0, 1}));
+    const Normal tilted = glm::normalize(Vec3(0.1f, 0.2f, 1));
+    if (p.z < 1.5f && p.x > -10) expectIrradiance(scene, p, tilted, 3 * lambert(kL, p, tilted));
+  }
+  // A receiver that stands upright at x = 0 sees what lies beyond: one of the two arms.
+  const std::vector<Point> arm = {{0, -1, 2}, {0, 0, 2}, {2, 0, 2}, {2, -1, 2}};
+  expectIrradiance(scene, {0, 0.5f, 0}, {1, 0, 0}, 3 * lambert(arm, {0, 0.5f, 0}, {1, 0, 0}));
+  // From above there is light when it has two sides only.
+  EXPECT_EQ(irradiance(Emitters(scene), {0, 0, 3}, {0, 0, -1}, 100).mean, 0);
+  scene.lights[0].two_sided = true;
+  expectIrradiance(scene, {0.2f, 0, 3}, {0, 0, -1}, 3 * lambert(kL, {0.2f, 0, 3}, {0, 0, -1}));
+}
+
+TEST(Emitters, ADiskMayShineToBothSides) {
+  scene::Scene scene;
+  scene.lights.push_back(lightOf(Light::Kind::kArea, 7));
+  scene.lights[0].position = {0, 0, -0.8f}, scene.lights[0].direction = {0, 0, -1};
+  scene.lights[0].area = kPi * 0.25f, scene.lights[0].two_sided = true;
+  expectIrradiance(scene, {0, 0, 0}, {0, 0, -1}, 6.177288925597907);
+}
+
+// What rays over the whole hemisphere meet of a light is its irradiance; none passes between two triangles.
+TEST(Emitters, RaysMeetPolygonsWithoutGaps) {
+  scene::Scene scene;
+  scene.lights = {polygonLight(3)};
+  const Emitters emitters(scene);
+  const Point p(0.2f, -0.3f, 0.4f);
+  constexpr std::uint32_t kRays = 1u << 16;
+  std::vector<LightSeen> seen;
+  double sum = 0;
+  for (std::uint32_t i = 0; i < kRays; ++i) {
+    const Direction d = squareToCosineHemisphere(sobol2(i, 3));
+    seen.clear();
+    emitters.onRay(p, {0, 0, 1}, d, 0, kInfinity, seen);
+    EXPECT_LE(seen.size(), 1u);
+    for (const LightSeen& light : seen) sum += static_cast<double>(kPi * light.radiance.rgb.r) / kRays;
+  }
+  const double exact = 3 * lambert(kL, p, {0, 0, 1});
+  EXPECT_NEAR(sum, exact, 2e-3 * exact);
+  // Along the edges between the triangles.
+  for (const auto& [a, b, c] : scene.lights[0].triangles)
+    for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
+      for (int k = 1; k < 1000; ++k) {
+        const Point q = from + static_cast<float>(k) / 1000 * (to - from);
+        const auto inside = [&](Point x) {
+          return x.x > -0.999f && x.y > -0.999f &&
+                 (x.x < -1e-3f ? x.y < 0.999f : x.x < 1.999f && x.y < -1e-3f);
+        };
+        if (!inside(q)) continue;  // on the outline
+        seen.clear();
+        emitters.onRay(p, {0, 0, 1}, glm::normalize(q - p), 0, kInfinity, seen);
+        EXPECT_FALSE(seen.empty()) << q.x << " " << q.y;
+      }
+}
+
 TEST(Emitters, EnvironmentsGiveTheirIntegral) {
   scene::Scene scene;
   scene.environment.radiance = Radiance(2.0f);
@@ -160,7 +241,10 @@ TEST(Emitters, ARayThatMeetsALightKnowsItsDensity) {
   Light sun = lightOf(Light::Kind::kDirectional, 2), disk = lightOf(Light::Kind::kArea, 5);
   sun.direction = glm::normalize(Vec3(0.2f, 1, -0.1f)), sun.angular_radius = 0.2f;
   disk.position = {0, -1, 3}, disk.direction = {0, 0, -1}, disk.area = 0.3f;
-  scene.lights = {sun, disk, lightOf(Light::Kind::kPoint, 1)};
+  Light polygon = polygonLight(1.5f);
+  for (auto& triangle : polygon.triangles)
+    for (Point& corner : triangle) corner = 0.3f * corner + Vec3(0.5f, -1.2f, 2.2f);
+  scene.lights = {sun, disk, lightOf(Light::Kind::kPoint, 1), polygon};
   scene.lights[2].position = {1, -1.5f, 2};
   scene.environment.radiance = Radiance(0.5f);
   const trace::Tracer tracer(scene);

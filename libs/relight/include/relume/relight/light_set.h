@@ -12,8 +12,10 @@ namespace relume::relight {
 /// A list of lights, or an object whose member `lights` is one (it may have an `environment` alone). Fields
 /// are those of KHR_lights_punctual: type (point, spot, directional; here also area), color, intensity,
 /// range, spot {innerConeAngle, outerConeAngle}, name; and, as there is no node: position (all but
-/// directional), direction (spot, directional: the way the light travels), and for area lights area (m^2) and
-/// normal; intensity of an area light is its radiance. A directional light may have an angularDiameter in
+/// directional), direction (spot, directional: the way the light travels), and for area lights either
+/// area (m^2), position and normal of a disk, or vertices, the corners of a flat polygon that shines to the
+/// side from which they go counter-clockwise; both may be twoSided; intensity of an area light is its
+/// radiance. A directional light may have an angularDiameter in
 /// radians (the sun: 0.0093): what casts shadows then sees a disk of that size. Vectors need not have unit
 /// length. Defaults as in KHR_lights_punctual. Strict: throws Error kInvalidJson or kInvalidValue naming the
 /// light and the field, also for a field that is not known.

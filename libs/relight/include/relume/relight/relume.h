@@ -40,6 +40,7 @@ typedef enum relume_light_kind {
   RELUME_AREA = 3
 } relume_light_kind;
 
+/* An area light is taken for a disk of its area about its middle. */
 typedef struct relume_light {
   int32_t kind; /* relume_light_kind */
   float colour[3];

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Everything in a scene that emits, in one table to sample light from: punctual lights, area lights (disks),
-// suns (directional lights with an angular size), emissive triangles with their textures, the environment.
-// Based on:
+// Everything in a scene that emits, in one table to sample light from: punctual lights, area lights (disks
+// and polygons), suns (directional lights with an angular size), emissive triangles with their textures, the
+// environment. Based on:
 //   [RTR] Akenine-Moeller, Haines, Hoffman. Real-Time Rendering, 3rd ed. Section 11.1: emitted radiance L_e.
 //   [CK18] Conty Estevez, Kulla. Importance Sampling of Many Lights with Adaptive Tree Splitting. HPG 2018.
 //   [KHR] KHR_lights_punctual.
 // What has a place and what is infinitely far away are sampled apart, because neither tells what the other is
 // worth behind walls. Of the former one is chosen in proportion to an estimate of the irradiance that it
 // gives (light_tree); of the latter half of the time by its irradiance and half of the time evenly, because
-// none of this knows what is hidden. Then a direction: uniform in solid angle for triangles and suns, in area
-// for disks, by radiance for the environment. What holds: an emitter that can be hit by a ray has a pdf for
-// it, so sampling of light and of directions combine (multiple importance sampling). Point and spot lights,
-// and directional ones of no size, can only be sampled. Limits: disks are looked for one by one on every ray,
-// meant for some tens of them. An emissive triangle is chosen by the mean of 32 look-ups of its texture.
+// none of this knows what is hidden. Then a direction: uniform in solid angle for triangles, polygons' too,
+// and suns, in area for disks, by radiance for the environment. What holds: an emitter that can be hit by a
+// ray has a pdf for it, so sampling of light and of directions combine (multiple importance sampling). Point
+// and spot lights, and directional ones of no size, can only be sampled. Limits: disks and triangles of
+// polygons are looked for one by one on every ray, meant for some tens of them. An emissive triangle is
+// chosen by the mean of 32 look-ups of its texture.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -42,7 +43,7 @@ struct LightSeen {
 };
 
 enum class Reach : std::uint8_t {
-  kLocal,    ///< point and spot lights, disks, triangles
+  kLocal,    ///< point and spot lights, area lights, triangles
   kDistant,  ///< directional lights, the environment
 };
 
@@ -78,8 +79,8 @@ class Emitters {
   /// p.
   LightSeen onSurface(Point p, Normal n, Direction d, const scene::Hit& hit, float distance,
                       bool back_face) const;
-  /// Appends what a ray from p sees that is no surface: disks between the distances `from` and `to` and,
-  /// where it escapes (`to` is infinite), suns and environment.
+  /// Appends what a ray from p sees that is no surface: area lights between the distances `from` and `to`
+  /// and, where it escapes (`to` is infinite), suns and environment.
   void onRay(Point p, Normal n, Direction d, float from, float to, std::vector<LightSeen>& seen) const;
 
  private:
