@@ -66,6 +66,8 @@ const Plane& Layer::plane(std::string_view plane_name) const {
               fmt::format("has no plane {} (it has: {})", plane_name, namesOf(planes)));
 }
 
+const Table* Layer::findTable(std::string_view table_name) const { return findNamed(tables, table_name); }
+
 const Layer* Asset::find(std::string_view name) const { return findNamed(layers, name); }
 
 const Layer& Asset::layer(std::string_view name) const {

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What relighting must know of each covered texel, in about a fifth of its size.
-//   position   = origin + step q, q < 2^23: on a flat chart successive q differ by constants, which Zstandard
-//   likes and the bits of
-//                floats hide. The step is a power of two, 2^-23 to 2^-22 of the largest extent: float32's
-//                spacing at its far end.
-//   normal     octahedral map ([MMESST14] section 3), two integers of 16 bits; the axes are exact.
-//   albedo     its square root in 8 bits: even steps for the eye, as sRGB, but with a formula of one line.
-// Based on:
-//   [MMESST14] Cigolle et al. A Survey of Efficient Representations for Independent Unit Vectors. JCGT 3(2),
-//   2014.
+// What relighting must know of each covered texel, in about a fifth of its size: positions and normals as in
+// surface_codec.h, albedo as its square root in 8 bits: even steps for the eye, as sRGB, but with a formula
+// of one line.
 #include "atlas_table.h"
 
 #include <fmt/format.h>
@@ -19,89 +12,21 @@
 #include "relume/codec/quantize.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
+#include "surface_codec.h"
 
 namespace relume::asset {
 namespace {
 
-constexpr int kPositionBits = 23;
-constexpr float kOctahedralMax = 32767.0f;
-constexpr std::uint16_t kOctahedralLast = 65534;
-
-[[noreturn]] void badTexel(std::size_t item, const char* problem) {
-  throw Error(ErrorCode::kInvalidValue, fmt::format("atlas texel {}", item), problem);
-}
-
-struct Grid {
-  Point origin{0.0f};
-  float step = 1.0f;  ///< metres
-};
-
-Grid gridOf(const std::vector<Point>& positions) {
-  Box3 box;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (!isFinite(positions[i])) badTexel(i, "has a position that is not finite");
-    box.add(positions[i]);
-  }
-  if (box.empty()) return {};
-  const Vec3 extent = box.extent();
-  const float largest = std::max({extent.x, extent.y, extent.z});
-  if (!std::isfinite(largest)) badTexel(0, "lies farther from another than a float can say");
-  // ilogb + 1 bits hold the extent; never finer than the smallest normal float.
-  const float step =
-      largest > 0 ? std::ldexp(1.0f, std::max(std::ilogb(largest) + 1 - kPositionBits, -126)) : 1.0f;
-  return {box.lo, step};
-}
-
-std::vector<std::uint32_t> encodePositions(const std::vector<Point>& positions, const Grid& grid) {
-  std::vector<std::uint32_t> q;
-  q.reserve(positions.size() * 3);
-  for (const Point& p : positions)
-    for (int c = 0; c < 3; ++c)
-      q.push_back(
-          static_cast<std::uint32_t>(std::lround((static_cast<double>(p[c]) - grid.origin[c]) / grid.step)));
-  return q;
-}
-
-std::uint16_t octahedralInteger(float x) {
-  return static_cast<std::uint16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * kOctahedralMax) +
-                                    static_cast<long>(kOctahedralMax));
-}
-
-float awayFromZero(float x) { return x < 0 ? -1.0f : 1.0f; }
-
-// The lower half of the octahedron is folded over the diagonals of the square.
-Vec2 fold(Vec2 p) {
-  return {(1 - std::abs(p.y)) * awayFromZero(p.x), (1 - std::abs(p.x)) * awayFromZero(p.y)};
-}
-
-std::vector<std::uint16_t> encodeNormals(const std::vector<Normal>& normals) {
-  std::vector<std::uint16_t> q;
-  q.reserve(normals.size() * 2);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const Normal n = normals[i];
-    const float norm = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    if (!(norm > 0.5f && norm < 2.0f)) badTexel(i, "has a normal that is not of unit length");
-    Vec2 p = Vec2(n.x, n.y) / norm;
-    if (n.z < 0) p = fold(p);
-    q.push_back(octahedralInteger(p.x));
-    q.push_back(octahedralInteger(p.y));
-  }
-  return q;
-}
-
-Normal decodeNormal(std::uint16_t qx, std::uint16_t qy) {
-  Vec2 p = Vec2(qx, qy) / kOctahedralMax - Vec2(1.0f);
-  const float z = 1 - std::abs(p.x) - std::abs(p.y);
-  if (z < 0) p = fold(p);
-  return glm::normalize(Vec3(p, z));
-}
+constexpr const char* kTexel = "atlas texel";
 
 std::vector<std::uint8_t> encodeAlbedo(const std::vector<Vec3>& albedo) {
   std::vector<std::uint8_t> q;
   q.reserve(albedo.size() * 3);
   for (std::size_t i = 0; i < albedo.size(); ++i)
     for (int c = 0; c < 3; ++c) {
-      if (!(albedo[i][c] >= 0)) badTexel(i, "has an albedo that is not a number from 0 to 1");
+      if (!(albedo[i][c] >= 0))
+        throw Error(ErrorCode::kInvalidValue, fmt::format("{} {}", kTexel, i),
+                    "has an albedo that is not a number from 0 to 1");
       q.push_back(codec::unorm8FromFloat(std::sqrt(albedo[i][c]), 0, 1));
     }
   return q;
@@ -143,7 +68,7 @@ Json encodeAtlas(const AtlasTable& atlas, ArrayWriter& writer) {
     RELUME_CHECK_LT(atlas.texel[i], atlas.pageTexels());
     if (i > 0) RELUME_CHECK_LT(atlas.texel[i - 1], atlas.texel[i]);
   }
-  const Grid grid = gridOf(atlas.position);
+  const Grid grid = gridOf(atlas.position, kTexel);
   Json json;
   json["width"] = atlas.width;
   json["height"] = atlas.height;
@@ -154,7 +79,7 @@ Json encodeAtlas(const AtlasTable& atlas, ArrayWriter& writer) {
   Json& planes = json["planes"];
   planes.push_back(writer.write("texel", "uint32", atlas.texel, 1));
   planes.push_back(writer.write("position", "uint32", encodePositions(atlas.position, grid), 3));
-  planes.push_back(writer.write("normal", "uint16", encodeNormals(atlas.normal), 2));
+  planes.push_back(writer.write("normal", "uint16", encodeNormals(atlas.normal, kTexel), 2));
   if (!atlas.albedo.empty())
     planes.push_back(writer.write("sqrtAlbedo", "uint8", encodeAlbedo(atlas.albedo), 3));
   planes.push_back(writer.write("valid", "uint8", atlas.valid, 1));
@@ -182,9 +107,7 @@ AtlasTable decodeAtlas(const JsonNode& node, ArrayReader& reader) {
   const auto positions = readPlane<std::uint32_t>(node, reader, "position", "uint32", 3, count);
   atlas.position.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    for (int c = 0; c < 3; ++c)
-      atlas.position[i][c] = static_cast<float>(
-          grid.origin[c] + static_cast<double>(grid.step) * positions[3 * i + static_cast<std::size_t>(c)]);
+    atlas.position[i] = decodePosition(positions.data() + 3 * i, grid);
     if (!isFinite(atlas.position[i])) node.fail(fmt::format("has an infinite position at texel {}", i));
   }
 
@@ -193,7 +116,7 @@ AtlasTable decodeAtlas(const JsonNode& node, ArrayReader& reader) {
   for (std::size_t i = 0; i < count; ++i) {
     if (std::max(normals[2 * i], normals[2 * i + 1]) > kOctahedralLast)
       node.fail("has a normal off the octahedron");
-    atlas.normal[i] = decodeNormal(normals[2 * i], normals[2 * i + 1]);
+    atlas.normal[i] = decodeNormal(normals.data() + 2 * i);
   }
 
   if (hasPlane(node, "sqrtAlbedo")) {

@@ -11,6 +11,7 @@
 #include "relume/codec/quantize.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
+#include "table_codec.h"
 
 namespace relume::asset {
 namespace {
@@ -178,6 +179,7 @@ Json encodeLayer(const Layer& layer, std::size_t page_texels, ArrayWriter& write
   json["planes"] = Json::array();
   for (const Plane& plane : layer.planes)
     json["planes"].push_back(encodePlane(layer, plane, page_texels, writer));
+  for (const Table& table : layer.tables) json["tables"].push_back(encodeTable(layer, table, writer));
   return json;
 }
 
@@ -197,6 +199,9 @@ Layer decodeLayer(const JsonNode& node, std::size_t page_texels, ArrayReader& re
     layer.parameters[key] = decodeParameter(parameters.at(key.c_str()));
   for (const JsonNode& plane : node.at("planes").items())
     layer.planes.push_back(decodePlane(plane, page_texels, reader));
+  if (node.has("tables"))
+    for (const JsonNode& table : node.at("tables").items())
+      layer.tables.push_back(decodeTable(table, reader));
   return layer;
 }
 

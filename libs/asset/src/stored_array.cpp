@@ -30,16 +30,32 @@ codec::Filter filterOf(const JsonNode& node) {
 
 Json ArrayWriter::writeBytes(const char* name, const char* storage, std::span<const std::byte> bytes,
                              codec::Layout layout, codec::Filter filter) {
+  return describe(name, storage, bytes.size(), layout, filter, codec::compress(bytes, filter, layout));
+}
+
+Json ArrayWriter::writeSmallest(const char* name, const char* storage, std::span<const std::byte> bytes,
+                                codec::Layout layout) {
+  codec::Filter best = codec::Filter::kNone;
+  std::vector<std::byte> stored = codec::compress(bytes, best, layout);
+  for (const codec::Filter filter : {codec::Filter::kShuffle, codec::Filter::kDelta}) {
+    std::vector<std::byte> other = codec::compress(bytes, filter, layout);
+    if (other.size() < stored.size()) stored = std::move(other), best = filter;
+  }
+  return describe(name, storage, bytes.size(), layout, best, std::move(stored));
+}
+
+Json ArrayWriter::describe(const char* name, const char* storage, std::size_t bytes, codec::Layout layout,
+                           codec::Filter filter, std::vector<std::byte> stored) {
   Json plane;
   plane["name"] = name;
   plane["storage"] = storage;
   plane["channels"] = layout.channels;
-  plane["count"] = bytes.size() / (layout.element_size * layout.channels);
+  plane["count"] = bytes / (layout.element_size * layout.channels);
   plane["filter"] = filterName(filter);
-  plane["byteLength"] = bytes.size();
+  plane["byteLength"] = bytes;
   plane["bufferView"] = views_.size();
-  views_.push_back(codec::compress(bytes, filter, layout));
-  plane["crc32"] = crc32(views_.back());
+  plane["crc32"] = crc32(stored);
+  views_.push_back(std::move(stored));
   return plane;
 }
 

@@ -30,8 +30,18 @@ class ArrayWriter {
              codec::Filter filter = codec::Filter::kDelta) {
     return write(name, storage, std::span<const T>(values), channels, filter);
   }
+  /// With the filter that leaves the fewest bytes.
+  template <class T>
+  Json writeSmallest(const char* name, const char* storage, const std::vector<T>& values,
+                     std::size_t channels) {
+    return writeSmallest(name, storage, std::as_bytes(std::span(values)), {sizeof(T), channels});
+  }
 
  private:
+  Json writeSmallest(const char* name, const char* storage, std::span<const std::byte> bytes,
+                     codec::Layout layout);
+  Json describe(const char* name, const char* storage, std::size_t bytes, codec::Layout layout,
+                codec::Filter filter, std::vector<std::byte> stored);
   Json writeBytes(const char* name, const char* storage, std::span<const std::byte> bytes,
                   codec::Layout layout, codec::Filter filter);
   std::vector<std::vector<std::byte>>& views_;

@@ -11,6 +11,7 @@
 
 #include "example_asset.h"
 #include "glb.h"
+#include "json_node.h"
 #include "relume/core/error.h"
 #include "relume/core/file.h"
 
@@ -124,6 +125,29 @@ TEST(Asset, EncodingIsDeterministicAndStable) {
   // Decoded values are representable, so a second generation loses nothing.
   const Asset once = decode(file, "test.glb");
   EXPECT_TRUE(sameValues(decode(encodeGlb(once), "test.glb"), once));
+}
+
+TEST(Asset, TablesKeepEveryBit) {
+  Asset asset = exampleAsset();
+  asset.layers[1].tables = {{"i8", 1, std::vector<std::int8_t>{-128, 0, 127, 5, 5, 5}},
+                            {"u8", 3, std::vector<std::uint8_t>{0, 255, 7}},
+                            {"i16", 2, std::vector<std::int16_t>{-32768, 32767}},
+                            {"u16", 1, std::vector<std::uint16_t>{65535}},
+                            {"u32", 1, std::vector<std::uint32_t>{0, ~0u, 3}},
+                            {"f32", 1, std::vector<float>{-0.0f, 1e-40f, 3e38f}},
+                            {"empty", 4, std::vector<float>{}}};
+  const Asset got = decode(encodeGlb(asset), "test.glb");
+  expectNear(got, asset);
+  ASSERT_EQ(got.layers[1].tables.size(), asset.layers[1].tables.size());
+  for (const Table& want : asset.layers[1].tables) {
+    const Table* table = got.layers[1].findTable(want.name);
+    ASSERT_NE(table, nullptr) << want.name;
+    EXPECT_EQ(table->channels, want.channels);
+    EXPECT_EQ(table->values, want.values) << want.name;
+  }
+  EXPECT_EQ(got.layers[1].findTable("none"), nullptr);
+  asset.layers[1].tables[5].values = std::vector<float>{1, std::nanf("")};
+  EXPECT_THROW(encode(asset), Error);
 }
 
 TEST(Asset, EmptyBake) {
@@ -300,6 +324,17 @@ TEST(Untrusted, SaysWhatIsWrong) {
     EXPECT_EQ(codeOf(long_chunk), ErrorCode::kTruncated);
   }
   EXPECT_THROW(readAsset("/no/such/file.glb"), Error);
+}
+
+// A table in a storage of later files, with the checksum that its description then has.
+TEST(Untrusted, UnknownStorageOfATableIsRefused) {
+  Asset asset = exampleAsset();
+  asset.layers[0].tables = {{"t", 1, std::vector<std::int8_t>{1, 2, 3}}};
+  auto bake = nlohmann::json::parse(encode(asset).json);
+  bake["layers"][0]["tables"][0]["storage"] = "float64";
+  bake["crc32"] = descriptionCrc(JsonNode(bake, "test.glb", ""));
+  EXPECT_EQ(codeOf(withJson(encodeGlb(asset), [&](auto& j) { j["extensions"]["RELUME_transfer"] = bake; })),
+            ErrorCode::kCorruptAsset);
 }
 
 TEST(Untrusted, DeepNestingIsRefused) {

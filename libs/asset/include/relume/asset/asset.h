@@ -30,6 +30,18 @@ struct Plane {
   std::vector<float> values;            ///< finite
 };
 
+/// Numbers of a table, as the file keeps them.
+using TableValues =
+    std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>,
+                 std::vector<std::uint16_t>, std::vector<std::uint32_t>, std::vector<float>>;
+
+/// A named array of a layer that is not over the atlas' texels. Kept bit for bit. shape: [count][channels]
+struct Table {
+  std::string name;          ///< "planes", "tileRow", ...
+  std::size_t channels = 1;  ///< 1 to 256
+  TableValues values;        ///< a whole number of rows; floats are finite
+};
+
 /// A number (infinity: no limit), a word or a switch.
 using Parameter = std::variant<double, std::string, bool>;
 
@@ -39,11 +51,14 @@ struct Layer {
   std::string emitters, transport, receivers, codec;  ///< the row of the registry
   std::map<std::string, Parameter> parameters;        ///< as baked, defaults filled in
   std::vector<Plane> planes;  ///< over all texels of all pages, dilated: shape [pages*height*width][channels]
+  std::vector<Table> tables;  ///< what else the kind needs, e.g. transfer (asset/transfer.h)
   double error_estimate = 0;  ///< relative RMS standard error of the layer, as estimated by its solver
   std::uint64_t samples = 0;  ///< rays or paths per texel, at most
 
   /// Throws Error kMismatch, naming the planes there are.
   const Plane& plane(std::string_view plane_name) const;
+  /// Null where there is none.
+  const Table* findTable(std::string_view table_name) const;
 };
 
 /// Surface data that relighting needs, per covered texel. The file keeps positions to 2^-23 of the largest
@@ -79,7 +94,7 @@ struct Encoded {
   std::vector<std::vector<std::byte>> views;
 };
 /// Throws Error kInvalidValue for a number that its storage cannot hold (infinite, above 65504 in float16,
-/// outside lo..hi).
+/// outside lo..hi; in tables a float that is not finite).
 Encoded encode(const Asset& asset);
 /// A .glb that carries the bake and no scene: for engines that have the geometry already.
 std::vector<std::byte> encodeGlb(const Asset& asset);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Transfer of light as a layer keeps it: what the bake writes and the run time reads (docs/format.md, kind
+// `lightpath`).
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "relume/asset/asset.h"
+#include "relume/codec/block_matrix.h"
+
+namespace relume::asset {
+
+/// Where light enters: parts of the surface, each with fixed points at which its irradiance is taken.
+struct Entries {
+  std::uint32_t samples = 1;    ///< points of an entry, equal shares of its area
+  std::vector<Point> position;  ///< world; shape: [entries][samples]
+  std::vector<Normal> normal;   ///< world, unit length; shape: [entries][samples]
+  std::vector<float> area;      ///< m^2; shape: [entries]
+  std::vector<float> weight;    ///< shape: [entries], or empty: all 1; factor of an entry's irradiance
+
+  std::size_t size() const { return area.size(); }
+};
+
+/// Where it leaves: blocks of side x side texels of the atlas, of one chart each.
+struct Exits {
+  std::uint32_t side = 1;                    ///< texels along a block
+  std::vector<std::uint32_t> exit_of_texel;  ///< shape: [texels of the atlas table]; a row of the matrix
+};
+
+/// Irradiance of exit x = sum over entries e of matrix[x][e] weight[e] mean over e's points of their direct
+/// irradiance. Indirect light alone: the direct light at the exit is not in it.
+struct Transfer {
+  codec::BlockMatrix matrix;  ///< rows: exits, columns: entries
+  Entries entries;
+  Exits exits;
+
+  /// Throws Error kCorruptAsset, naming `layer`, unless the parts fit each other and `atlas`, numbers are
+  /// finite, areas and weights not negative, normals of unit length, and every block of texels lies in one
+  /// chart.
+  void check(const AtlasTable& atlas, const std::string& layer) const;
+};
+
+/// Tables for Layer::tables. Positions of entry points are kept to 2^-12 of the mean entry's side (or 2^-23
+/// of the extent, where that is coarser), normals to 1e-4 rad, all else bit for bit. Throws as check().
+std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& atlas);
+
+/// Throws Error kMismatch where `layer` has no transfer, kCorruptAsset where its tables do not make a sound
+/// one.
+Transfer readTransfer(const Layer& layer, const AtlasTable& atlas);
+
+}  // namespace relume::asset

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "relume/asset/transfer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "relume/core/error.h"
+#include "surface_codec.h"
+
+namespace relume::asset {
+namespace {
+
+constexpr float kUnitTolerance = 1e-3f;
+constexpr float kPositionShare = 0x1p-11f;  // of an entry's side: the coarsest step of its points
+constexpr const char* kPoint = "entry point";
+
+// The columns of table "shape".
+enum ShapeField : std::size_t { kExits, kEntries, kChannels, kBits, kSamples, kSide, kShapeFields };
+
+[[noreturn]] void corrupt(const std::string& layer, const std::string& problem) {
+  throw Error(ErrorCode::kCorruptAsset, "layer " + layer, problem, "the file was damaged; bake it again");
+}
+
+bool soundAmount(float v) { return std::isfinite(v) && v >= 0; }
+
+void checkEntries(const Entries& entries, std::size_t columns, const std::string& layer) {
+  if (entries.size() != columns)
+    corrupt(layer, fmt::format("it has {} entries for {} columns", entries.size(), columns));
+  const std::uint64_t points = std::uint64_t{entries.samples} * columns;
+  if (entries.samples == 0 || entries.position.size() != points || entries.normal.size() != points)
+    corrupt(layer, fmt::format("its entries have {} positions and {} normals where {} entries have {} each",
+                               entries.position.size(), entries.normal.size(), columns, entries.samples));
+  for (std::size_t i = 0; i < points; ++i)
+    if (!isFinite(entries.position[i]) || !(std::abs(glm::length(entries.normal[i]) - 1) < kUnitTolerance))
+      corrupt(layer, fmt::format("entry point {} is not a place with a unit normal", i));
+  if (!std::all_of(entries.area.begin(), entries.area.end(), soundAmount))
+    corrupt(layer, "the area of an entry is negative or not finite");
+  if (!entries.weight.empty() && entries.weight.size() != columns)
+    corrupt(layer, fmt::format("it has {} entry weights for {} entries", entries.weight.size(), columns));
+  if (!std::all_of(entries.weight.begin(), entries.weight.end(), soundAmount))
+    corrupt(layer, "the weight of an entry is negative or not finite");
+}
+
+void checkExits(const Exits& exits, std::size_t rows, const AtlasTable& atlas, const std::string& layer) {
+  if (exits.side == 0) corrupt(layer, "its exits are blocks of 0 texels");
+  if (exits.exit_of_texel.size() != atlas.texel.size())
+    corrupt(layer, fmt::format("it has exits of {} texels where the atlas has {}", exits.exit_of_texel.size(),
+                               atlas.texel.size()));
+  const auto width = static_cast<std::uint32_t>(atlas.width),
+             height = static_cast<std::uint32_t>(atlas.height);
+  const auto blockOf = [&](std::size_t i) {
+    const std::uint32_t texel = atlas.texel[i], row = texel / width;
+    return std::tuple(row / height, row % height / exits.side, texel % width / exits.side, atlas.chart[i]);
+  };
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::vector<std::size_t> first(rows, kNone);
+  for (std::size_t i = 0; i < exits.exit_of_texel.size(); ++i) {
+    const std::uint32_t exit = exits.exit_of_texel[i];
+    if (exit >= rows) corrupt(layer, fmt::format("texel {} has exit {} of {}", i, exit, rows));
+    if (first[exit] == kNone) first[exit] = i;
+    if (blockOf(i) != blockOf(first[exit]))
+      corrupt(layer, fmt::format("exit {} is in more than one block of a chart", exit));
+  }
+}
+
+// Positions finer than what an entry can tell apart are noise that does not compress.
+float coarsestStep(const Entries& entries) {
+  const double total = std::accumulate(entries.area.begin(), entries.area.end(), 0.0);
+  return entries.size() == 0
+             ? 0.0f
+             : static_cast<float>(std::sqrt(total / static_cast<double>(entries.size()))) * kPositionShare;
+}
+
+/// Looks tables up by name, type and shape.
+class TableReader {
+ public:
+  explicit TableReader(const Layer& layer) : layer_(layer) {}
+
+  template <class T>
+  const std::vector<T>& get(const char* name, std::size_t channels = 1) const {
+    const Table* table = layer_.findTable(name);
+    if (!table) corrupt(layer_.name, fmt::format("it has no table {}", name));
+    const auto* values = std::get_if<std::vector<T>>(&table->values);
+    if (!values || table->channels != channels || values->size() % channels != 0)
+      corrupt(layer_.name, fmt::format("its table {} has another type or number of channels", name));
+    return *values;
+  }
+  bool has(const char* name) const { return layer_.findTable(name) != nullptr; }
+
+ private:
+  const Layer& layer_;
+};
+
+std::vector<Point> readPositions(const TableReader& tables, const std::string& layer) {
+  const auto& stored_grid = tables.get<float>("entryGrid", 4);
+  if (stored_grid.size() != 4) corrupt(layer, "its table entryGrid has more than one row");
+  const Grid grid{{stored_grid[0], stored_grid[1], stored_grid[2]}, stored_grid[3]};
+  const auto& q = tables.get<std::uint32_t>("entryPosition", 3);
+  std::vector<Point> positions(q.size() / 3);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = decodePosition(q.data() + 3 * i, grid);
+  return positions;
+}
+
+std::vector<Normal> readNormals(const TableReader& tables, const std::string& layer) {
+  const auto& q = tables.get<std::uint16_t>("entryNormal", 2);
+  if (std::any_of(q.begin(), q.end(), [](std::uint16_t v) { return v > kOctahedralLast; }))
+    corrupt(layer, "an entry point has a normal off the octahedron");
+  std::vector<Normal> normals(q.size() / 2);
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = decodeNormal(q.data() + 2 * i);
+  return normals;
+}
+
+}  // namespace
+
+void Transfer::check(const AtlasTable& atlas, const std::string& layer) const {
+  try {
+    matrix.check();
+  } catch (const Error& e) {
+    throw Error(e.code(), "layer " + layer, e.problem(), e.remedy());
+  }
+  checkEntries(entries, matrix.columns, layer);
+  checkExits(exits, matrix.rows, atlas, layer);
+}
+
+std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& atlas) {
+  transfer.check(atlas, "to be written");
+  const codec::BlockMatrix& m = transfer.matrix;
+  const Entries& entries = transfer.entries;
+  const Grid grid = gridOf(entries.position, kPoint, coarsestStep(entries));
+  std::vector<std::uint32_t> shape(kShapeFields);
+  shape[kExits] = m.rows, shape[kEntries] = m.columns, shape[kChannels] = m.channels, shape[kBits] = m.bits;
+  shape[kSamples] = entries.samples, shape[kSide] = transfer.exits.side;
+  std::vector<Table> tables{
+      {"shape", kShapeFields, std::move(shape)},
+      {"exitOfTexel", 1, transfer.exits.exit_of_texel},
+      {"entryGrid", 4, std::vector<float>{grid.origin.x, grid.origin.y, grid.origin.z, grid.step}},
+      {"entryPosition", 3, encodePositions(entries.position, grid)},
+      {"entryNormal", 2, encodeNormals(entries.normal, kPoint)},
+      {"entryArea", 1, entries.area},
+      {"tileFirst", 1, m.tile_first},
+      {"tileRow", 1, m.tile_row},
+      {"clusterFirst", 1, m.cluster_first},
+      {"clusterColumn", 1, m.cluster_column},
+      {"componentFirst", 1, m.component_first},
+      {"scale", 1, m.scale}};
+  if (!entries.weight.empty()) tables.push_back({"entryWeight", 1, entries.weight});
+  if (m.bits == 8) {
+    tables.push_back({"planes", 1, m.planes8});
+    tables.push_back({"weights", 1, m.weights8});
+  } else {
+    tables.push_back({"planes", 1, m.planes16});
+    tables.push_back({"weights", 1, m.weights16});
+  }
+  return tables;
+}
+
+Transfer readTransfer(const Layer& layer, const AtlasTable& atlas) {
+  const TableReader tables(layer);
+  if (!tables.has("shape"))
+    throw Error(ErrorCode::kMismatch, "layer " + layer.name, "has no transfer of light",
+                "relight a layer of kind lightpath");
+  const auto& shape = tables.get<std::uint32_t>("shape", kShapeFields);
+  if (shape.size() != kShapeFields) corrupt(layer.name, "its table shape has more than one row");
+  Transfer t;
+  t.matrix.rows = shape[kExits], t.matrix.columns = shape[kEntries];
+  t.matrix.channels = shape[kChannels], t.matrix.bits = shape[kBits];
+  t.matrix.tile_first = tables.get<std::uint32_t>("tileFirst");
+  t.matrix.tile_row = tables.get<std::uint32_t>("tileRow");
+  t.matrix.cluster_first = tables.get<std::uint32_t>("clusterFirst");
+  t.matrix.cluster_column = tables.get<std::uint32_t>("clusterColumn");
+  t.matrix.component_first = tables.get<std::uint32_t>("componentFirst");
+  t.matrix.scale = tables.get<float>("scale");
+  if (t.matrix.bits == 8) {
+    t.matrix.planes8 = tables.get<std::int8_t>("planes");
+    t.matrix.weights8 = tables.get<std::int8_t>("weights");
+  } else {
+    t.matrix.planes16 = tables.get<std::int16_t>("planes");
+    t.matrix.weights16 = tables.get<std::int16_t>("weights");
+  }
+  t.entries.samples = shape[kSamples];
+  t.entries.position = readPositions(tables, layer.name);
+  t.entries.normal = readNormals(tables, layer.name);
+  t.entries.area = tables.get<float>("entryArea");
+  if (tables.has("entryWeight")) t.entries.weight = tables.get<float>("entryWeight");
+  t.exits.side = shape[kSide];
+  t.exits.exit_of_texel = tables.get<std::uint32_t>("exitOfTexel");
+  t.check(atlas, layer.name);
+  return t;
+}
+
+}  // namespace relume::asset
