@@ -70,25 +70,40 @@ PreparedLight::PreparedLight(const Light& light)
       area(light.area),
       back(light.two_sided ? 1.0f : 0.0f) {}
 
-void addLight(const PreparedLight& light, const TexelBlock& texels, LightSums& sums) {
-  Factors f;
+namespace {
+
+void factorsOf(const PreparedLight& light, const TexelBlock& texels, Factors& f) {
   switch (light.kind) {
     case Light::Kind::kPoint:
-      localFactors<Light::Kind::kPoint>(light, texels, f);
-      break;
+      return localFactors<Light::Kind::kPoint>(light, texels, f);
     case Light::Kind::kSpot:
-      localFactors<Light::Kind::kSpot>(light, texels, f);
-      break;
+      return localFactors<Light::Kind::kSpot>(light, texels, f);
     case Light::Kind::kArea:
-      localFactors<Light::Kind::kArea>(light, texels, f);
-      break;
+      return localFactors<Light::Kind::kArea>(light, texels, f);
     case Light::Kind::kDirectional:
-      directionalFactors(light, texels, f);
-      break;
+      return directionalFactors(light, texels, f);
   }
-  for (std::size_t i = 0; i < texels.count; ++i) f.cosine[i] *= f.incident[i];
+}
+
+// received may be f.cosine.
+void multiplyFactors(const TexelBlock& texels, const Factors& f, float* received) {
+  for (std::size_t i = 0; i < texels.count; ++i) received[i] = f.cosine[i] * f.incident[i];
   if (texels.visibility)
-    for (std::size_t i = 0; i < texels.count; ++i) f.cosine[i] *= texels.visibility[i];
+    for (std::size_t i = 0; i < texels.count; ++i) received[i] *= texels.visibility[i];
+}
+
+}  // namespace
+
+void receivedFactors(const PreparedLight& light, const TexelBlock& texels, float* received) {
+  Factors f;
+  factorsOf(light, texels, f);
+  multiplyFactors(texels, f, received);
+}
+
+void addLight(const PreparedLight& light, const TexelBlock& texels, LightSums& sums) {
+  Factors f;
+  factorsOf(light, texels, f);
+  multiplyFactors(texels, f, f.cosine);
   for (int c = 0; c < 3; ++c) {
     const float s = light.strength[c];
     for (std::size_t i = 0; i < texels.count; ++i) {

@@ -38,6 +38,8 @@ struct LightSums {
   alignas(64) float incident[3][kBlock];  ///< E on a plane that faces the light
 };
 
+/// received: [count], visibility * E * cos of a light of unit strength
+void receivedFactors(const PreparedLight& light, const TexelBlock& texels, float* received);
 void addLight(const PreparedLight& light, const TexelBlock& texels, LightSums& sums);
 
 }  // namespace relume::relight

@@ -6,12 +6,12 @@
 #pragma once
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "relume/asset/asset.h"
 #include "relume/relight/light_set.h"
+#include "relume/relight/visibility.h"
 
 namespace relume::relight {
 
@@ -22,11 +22,6 @@ struct ObscuranceOptions {
   Irradiance ambient;  ///< I_A, as an irradiance
   float beta = 0.1f;   ///< share of every light that reaches every point as indirect light, in (0, 1)
 };
-
-/// Visibility of `light` (its index in the set) at every texel of the atlas table: fills with values in [0,
-/// 1]. The run-time has no rays; an engine answers from its shadow maps, the command line from rays. None:
-/// every light is seen everywhere. Called from the thread that evaluates, lights in order.
-using VisibilitySource = std::function<void(std::size_t light, std::span<float> visibility)>;
 
 /// Evaluates E(P) = (I_A + I'_S(P)) W(P) + I_S(P) at the covered texels of an asset, i.e. equation (5) before
 /// the surface's own reflectances: I = k E with k_A = k_D = k.
@@ -47,7 +42,8 @@ class ObscuranceRelighter {
 
   /// shape: [texels of the atlas table]; valid until the next call. Lights must be finite, their directions
   /// of unit length (parseLights sees to it). Nearer than a micrometre to a light its irradiance is taken as
-  /// 0. Allocates nothing after the first call with as many lights, and throws only what `visibility` throws.
+  /// 0. `visibility` is asked about the texels of the atlas table. Allocates nothing after the first call
+  /// with as many lights, and throws only what `visibility` throws.
   std::span<const Irradiance> evaluate(const LightSet& lights, const ObscuranceOptions& options,
                                        const VisibilitySource& visibility = {});
 

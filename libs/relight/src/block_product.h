@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// y = M x for a BlockMatrix, at the speed at which memory gives its bytes.
+//
+// In each tile of rows first s[k] = scale[k] sum over columns of weight[k][column] x[column], then y += s[k]
+// plane[k]. The second step, which reads most bytes, works in whole numbers: factors s are rounded to 16 bits
+// of the largest of 256 of them, which adds at most 1/256 to the rounding error that 8-bit planes have
+// already (and is the rounding error of 16-bit planes); two planes are interleaved, so that one instruction
+// multiplies and adds both. Planes of 16 bits are taken as two of 8: q = 257 high + low.
+//
+// Results do not depend on the number of threads nor on the processor (product_kernels.h). Clusters of
+// columns that are all 0 are left out, which changes no bit.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "product_kernels.h"
+#include "relume/codec/block_matrix.h"
+#include "relume/core/quantity.h"
+
+namespace relume::relight {
+
+class BlockProduct {
+ public:
+  static constexpr float kLargest = 1e20f;  ///< of |x|
+
+  /// Copies the matrix into the order in which it is read. `m` has passed check(); throws Error kCorruptAsset
+  /// where products could leave the range of floats.
+  explicit BlockProduct(const codec::BlockMatrix& m, const ProductKernels& kernels = bestKernels());
+
+  std::size_t rows() const { return rows_; }
+  std::size_t columns() const { return column_place_.size(); }
+  /// Stored samples that a product with all columns lit reads, bytes; what pads them is not counted.
+  std::size_t sampleBytes() const { return sample_bytes_; }
+
+  /// x: [columns], each |x| <= kLargest; y: [rows]. A matrix of one channel serves all three. Allocates
+  /// nothing.
+  void multiply(std::span<const Irradiance> x, std::span<Irradiance> y);
+
+ private:
+  struct Range {
+    std::size_t begin, end;
+  };
+  struct Cluster {
+    std::size_t first, columns;  ///< in x_, whole lanes
+    bool dark;
+  };
+  /// Of one tile and one cluster.
+  struct Block {
+    std::size_t components;  ///< whole kTogether
+    std::size_t first;       ///< in sum_
+    Range planes;            ///< of 8 bits, numbered within the tile
+    std::size_t weights;     ///< first sample in weights8_ or weights16_
+  };
+  struct Tile {
+    std::size_t strips;   ///< of kStripRows rows
+    std::size_t pairs;    ///< of planes
+    std::size_t rows;     ///< first in target_
+    std::size_t planes;   ///< first sample in planes_
+    std::size_t factors;  ///< first in factors_; shape: [3][pairs][2]
+    std::size_t steps;    ///< first in steps_; shape: [groups of pairs][3]
+    std::size_t blocks;   ///< first in blocks_, one for each cluster
+    std::size_t lit;      ///< first in lit_
+    std::size_t lit_count;
+  };
+
+  template <class Q>
+  void copySamples(const codec::BlockMatrix& m, const std::vector<Q>& planes, const std::vector<Q>& weights,
+                   std::vector<Q>& weights_out);
+  void placeColumns(const codec::BlockMatrix& m);
+  void placeRows(const codec::BlockMatrix& m);
+  void placeBlocks(const codec::BlockMatrix& m);
+
+  void gather(std::span<const Irradiance> x);
+  void weigh(const Tile& tile, std::size_t cluster);
+  void chooseFactors(Tile& tile);
+  void addStrips(const Tile& tile, std::size_t first, std::size_t last, std::span<Irradiance> y);
+
+  const ProductKernels& kernels_;
+  std::size_t rows_ = 0, channels_ = 1, digits_ = 1, sample_bytes_ = 0;
+  std::vector<std::uint32_t> column_place_;  ///< of column j in x_
+  std::size_t x_stride_ = 0;
+  std::vector<float> x_;  ///< [3][x_stride_]
+  std::vector<Cluster> clusters_;
+  std::vector<Tile> tiles_;
+  std::vector<Block> blocks_;
+  std::vector<std::int8_t> weights8_;
+  std::vector<std::int16_t> weights16_;
+  std::vector<float> scale_;           ///< by component in sum_
+  std::vector<float> sum_;             ///< s; shape: [components][3]
+  std::vector<std::int8_t> planes_;    ///< of each tile: [strips][channels][pairs][kStripRows][2]
+  std::vector<std::int16_t> factors_;  ///< s in units of its step
+  std::vector<float> steps_;
+  std::vector<Range> lit_;  ///< pairs of clusters that are not dark
+  /// Of each row of each tile, padded to whole strips: the row of y where no other tile has it, else kShared
+  /// + a place in shared_, or kPadding.
+  std::vector<std::uint32_t> target_;
+  std::vector<Irradiance> shared_;
+  std::vector<std::uint32_t> shared_row_, shared_first_;  ///< rows of several tiles, and their places
+};
+
+}  // namespace relume::relight

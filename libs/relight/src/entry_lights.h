@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Irradiance of entries of light under sets of lights, by what each light gives alone.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "light_kernel.h"
+#include "relume/asset/transfer.h"
+#include "relume/core/light.h"
+#include "relume/relight/visibility.h"
+
+namespace relume::relight {
+
+class EntryLights {
+ public:
+  explicit EntryLights(const asset::Entries& entries);
+
+  /// TransferRelighter::entryIrradiance.
+  std::span<const Irradiance> evaluate(const LightSet& lights, const VisibilitySource& visibility);
+  void forget();
+
+ private:
+  /// What a light of unit strength gives each entry: the mean over its points of visibility * E * cos.
+  struct Kept {
+    Light light;
+    bool valid = false, with_visibility = false;
+    std::vector<float> factor;
+  };
+
+  void renew(Kept& kept, const Light& light, std::size_t index, const VisibilitySource& visibility);
+  void addUp(const LightSet& lights);
+
+  std::size_t samples_;
+  std::array<std::vector<float>, 3> position_, normal_;  ///< by point
+  std::vector<float> visibility_;                        ///< by point
+  std::vector<Kept> kept_;
+  std::vector<Vec3> strength_;
+  std::vector<Irradiance> sum_, result_;
+};
+
+}  // namespace relume::relight

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "relume/relight/transfer_relighter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "block_product.h"
+#include "entry_lights.h"
+#include "exit_interpolation.h"
+#include "relume/asset/transfer.h"
+#include "relume/core/check.h"
+#include "relume/core/error.h"
+
+namespace relume::relight {
+namespace {
+
+BlockProduct productOf(const codec::BlockMatrix& m, const asset::Layer& layer) {
+  try {
+    return BlockProduct(m);
+  } catch (const Error& e) {
+    throw Error(e.code(), "layer " + layer.name, e.problem(), e.remedy());
+  }
+}
+
+bool sameBits(std::span<const Irradiance> a, std::span<const Irradiance> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+}  // namespace
+
+struct TransferRelighter::Impl {
+  Impl(asset::Transfer transfer, const asset::AtlasTable& atlas, const asset::Layer& layer)
+      : product(productOf(transfer.matrix, layer)),
+        lights(transfer.entries),
+        interpolation(transfer.exits, transfer.matrix.rows, atlas),
+        entries(std::move(transfer.entries)),
+        shown(entries.size()),
+        weighted(entries.size()),
+        exits(product.rows()),
+        texels(interpolation.texelCount()) {}
+
+  BlockProduct product;
+  EntryLights lights;
+  ExitInterpolation interpolation;
+  asset::Entries entries;
+  std::vector<Irradiance> shown;  ///< what exits were computed for, zero at first
+  std::vector<Irradiance> weighted;
+  std::vector<Irradiance> exits, texels;
+  bool texels_current = true;
+};
+
+TransferRelighter::TransferRelighter(const asset::Asset& asset, const asset::Layer& layer)
+    : impl_(std::make_unique<Impl>(asset::readTransfer(layer, asset.atlas), asset.atlas, layer)) {}
+
+TransferRelighter::~TransferRelighter() = default;
+TransferRelighter::TransferRelighter(TransferRelighter&&) noexcept = default;
+
+std::size_t TransferRelighter::entryCount() const { return impl_->entries.size(); }
+std::size_t TransferRelighter::exitCount() const { return impl_->exits.size(); }
+std::size_t TransferRelighter::texelCount() const { return impl_->texels.size(); }
+std::span<const Point> TransferRelighter::entryPoints() const { return impl_->entries.position; }
+std::span<const Normal> TransferRelighter::entryNormals() const { return impl_->entries.normal; }
+std::size_t TransferRelighter::pointsPerEntry() const { return impl_->entries.samples; }
+std::span<const float> TransferRelighter::entryAreas() const { return impl_->entries.area; }
+std::size_t TransferRelighter::sampleBytes() const { return impl_->product.sampleBytes(); }
+
+std::span<const Irradiance> TransferRelighter::entryIrradiance(const LightSet& lights,
+                                                               const VisibilitySource& visibility) {
+  return impl_->lights.evaluate(lights, visibility);
+}
+
+void TransferRelighter::forgetVisibility() { impl_->lights.forget(); }
+
+std::span<const Irradiance> TransferRelighter::relight(std::span<const Irradiance> entry_irradiance) {
+  Impl& i = *impl_;
+  RELUME_CHECK_EQ(entry_irradiance.size(), i.entries.size());
+  if (sameBits(entry_irradiance, i.shown)) return i.exits;
+  const std::vector<float>& weight = i.entries.weight;
+  for (std::size_t e = 0; e < entry_irradiance.size(); ++e) {
+    i.weighted[e] = weight.empty() ? entry_irradiance[e] : weight[e] * entry_irradiance[e];
+    for (int c = 0; c < 3; ++c)
+      if (!(std::abs(i.weighted[e].rgb[c]) <= BlockProduct::kLargest))
+        throw Error(ErrorCode::kInvalidValue, fmt::format("the irradiance of entry {}", e),
+                    fmt::format("is {} W/m^2", entry_irradiance[e].rgb[c]));
+  }
+  i.product.multiply(i.weighted, i.exits);
+  std::copy(entry_irradiance.begin(), entry_irradiance.end(), i.shown.begin());
+  i.texels_current = false;
+  return i.exits;
+}
+
+std::span<const Irradiance> TransferRelighter::texels() {
+  Impl& i = *impl_;
+  if (!i.texels_current) i.interpolation.apply(i.exits, i.texels);
+  i.texels_current = true;
+  return i.texels;
+}
+
+std::span<const Irradiance> TransferRelighter::evaluate(const LightSet& lights,
+                                                        const VisibilitySource& visibility) {
+  relight(entryIrradiance(lights, visibility));
+  return texels();
+}
+
+}  // namespace relume::relight

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "relume/relight/transfer_relighter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "made_bake.h"
+#include "relume/core/error.h"
+#include "relume/core/parallel.h"
+
+namespace relume::relight {
+namespace {
+
+LightSet someLights(std::size_t count) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> unit;
+  LightSet lights(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Light& l = lights[i];
+    l.kind = static_cast<Light::Kind>(i % 4);
+    l.colour = {unit(random), unit(random), unit(random)};
+    l.intensity = 10 * unit(random);
+    l.position = Vec3(4, 3, 5) * Vec3(unit(random), unit(random), unit(random));
+    l.direction = glm::normalize(Vec3(unit(random) - 0.5f, -1, unit(random) - 0.5f));
+    l.range = i % 3 == 0 ? 4 : kInfinity;
+    l.area = 0.1f + unit(random);
+    l.two_sided = i % 8 == 3;
+  }
+  return lights;
+}
+
+std::vector<Irradiance> copy(std::span<const Irradiance> values) { return {values.begin(), values.end()}; }
+
+// Point p of light l is seen by a share that anybody can compute.
+float share(std::size_t light, std::size_t point) { return static_cast<float>((7 * light + point) % 5) / 4; }
+
+TEST(TransferRelighter, EntryIrradianceIsTheMeanOfDirectLightOverItsPoints) {
+  const asset::Asset bake = madeBake({.columns = 90}, 4, 5);
+  TransferRelighter relighter(bake, bake.layers[0]);
+  ASSERT_EQ(relighter.entryCount(), 90u);
+  ASSERT_EQ(relighter.pointsPerEntry(), 5u);
+  const LightSet lights = someLights(12);
+  const VisibilitySource visibility = [](std::size_t light, std::span<float> v) {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = share(light, i);
+  };
+  for (const bool seen : {true, false}) {
+    const auto got = relighter.entryIrradiance(lights, seen ? VisibilitySource() : visibility);
+    for (std::size_t e = 0; e < 90; ++e) {
+      Vec3 expected(0);
+      for (std::size_t l = 0; l < lights.size(); ++l)
+        for (std::size_t i = 5 * e; i < 5 * e + 5; ++i)
+          expected +=
+              (seen ? 1 : share(l, i)) / 5.0f *
+              directIrradiance(lights[l], relighter.entryPoints()[i], relighter.entryNormals()[i]).rgb;
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[e].rgb[c], expected[c], 2e-5f * (1 + expected[c])) << e;
+    }
+  }
+}
+
+TEST(TransferRelighter, ExitsAreTheTransferOfTheEntries) {
+  asset::Asset bake = madeBake({});
+  asset::Transfer t = asset::readTransfer(bake.layers[0], bake.atlas);
+  t.entries.weight.assign(40, 1.0f);
+  for (std::size_t e = 0; e < 40; ++e) t.entries.weight[e] = 0.1f * static_cast<float>(e);
+  bake.layers[0].tables = asset::transferTables(t, bake.atlas);
+  TransferRelighter relighter(bake, bake.layers[0]);
+  const auto entries = copy(relighter.entryIrradiance(someLights(9)));
+  std::vector<float> in, expected(300);
+  for (std::size_t e = 0; e < 40; ++e)
+    for (int c = 0; c < 3; ++c) in.push_back(t.entries.weight[e] * entries[e].rgb[c]);
+  codec::multiply(t.matrix, in, expected);
+  float largest = 0;
+  for (const float v : expected) largest = std::max(largest, std::abs(v));
+  const auto exits = relighter.relight(entries);
+  ASSERT_EQ(exits.size(), 100u);
+  for (std::size_t i = 0; i < 300; ++i)
+    EXPECT_NEAR(exits[i / 3].rgb[static_cast<int>(i % 3)], expected[i], 3e-4f * largest) << i;
+}
+
+// Whatever was shown before, and with any number of threads.
+TEST(TransferRelighter, TheSameLightsGiveTheSameBits) {
+  const asset::Asset bake = madeBake({.rows = 300, .columns = 120});
+  const LightSet lights = someLights(7);
+  const VisibilitySource visibility = [](std::size_t light, std::span<float> v) {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = share(light, i);
+  };
+  TransferRelighter fresh(bake, bake.layers[0]);
+  const auto expected = copy(fresh.evaluate(lights, visibility));
+  TransferRelighter used(bake, bake.layers[0]);
+  LightSet others = lights;
+  for (int step = 0; step < 20; ++step) {
+    others[static_cast<std::size_t>(step) % 7].position.x += 0.3f;
+    others[static_cast<std::size_t>(step + 3) % 7].intensity *= 1.5f;
+    if (step % 5 == 4) others.pop_back();
+    used.evaluate(others, step % 3 == 0 ? VisibilitySource() : visibility);
+    ASSERT_EQ(copy(used.evaluate(lights, visibility)), expected) << step;
+  }
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    TransferRelighter other(bake, bake.layers[0]);
+    EXPECT_EQ(copy(other.evaluate(lights, visibility)), expected) << threads;
+  }
+}
+
+TEST(TransferRelighter, AsksOnlyAboutLightsThatMoved) {
+  const asset::Asset bake = madeBake({});
+  TransferRelighter relighter(bake, bake.layers[0]);
+  std::vector<std::size_t> asked;
+  const VisibilitySource visibility = [&](std::size_t light, std::span<float> v) {
+    EXPECT_EQ(v.size(), relighter.entryPoints().size());
+    std::fill(v.begin(), v.end(), 1.0f);
+    asked.push_back(light);
+  };
+  const auto askedFor = [&](const LightSet& lights) {
+    asked.clear();
+    relighter.evaluate(lights, visibility);
+    return asked;
+  };
+  using Indices = std::vector<std::size_t>;
+  LightSet lights = someLights(5);
+  EXPECT_EQ(askedFor(lights), (Indices{0, 1, 2, 3, 4}));
+  EXPECT_EQ(askedFor(lights), Indices());
+  lights[1].intensity *= 2, lights[2].colour.r = 0, lights[3].name = "new";
+  EXPECT_EQ(askedFor(lights), Indices());
+  lights[3].position.x += 0.1f, lights[4].range = 3;
+  EXPECT_EQ(askedFor(lights), (Indices{3, 4}));
+  relighter.forgetVisibility();
+  EXPECT_EQ(askedFor(lights), (Indices{0, 1, 2, 3, 4}));
+  relighter.evaluate(lights);  // without visibility: another question
+  EXPECT_EQ(askedFor(lights), (Indices{0, 1, 2, 3, 4}));
+  lights.pop_back();
+  EXPECT_EQ(askedFor(lights), Indices());
+}
+
+TEST(TransferRelighter, RefusesLightsThatMakeNoSenseAndKeepsWhatWas) {
+  const asset::Asset bake = madeBake({});
+  TransferRelighter relighter(bake, bake.layers[0]);
+  const LightSet lights = someLights(8);
+  const auto entries = copy(relighter.entryIrradiance(lights));
+  const auto exits = copy(relighter.relight(entries));
+  const auto refused = [&](std::size_t which, const auto& change, const VisibilitySource& visibility = {}) {
+    LightSet bad = lights;
+    change(bad[which]);
+    try {
+      relighter.evaluate(bad, visibility);
+      return false;
+    } catch (const Error& e) {
+      return e.code() == ErrorCode::kInvalidValue &&
+             e.subject().find(std::to_string(which)) != std::string::npos;
+    }
+  };
+  const float nan = std::nanf("");
+  EXPECT_FALSE(refused(0, [](Light&) {}));
+  EXPECT_TRUE(refused(0, [](Light& l) { l.intensity = -1; }));
+  EXPECT_TRUE(refused(4, [&](Light& l) { l.intensity = nan; }));
+  EXPECT_TRUE(refused(1, [](Light& l) { l.intensity = kInfinity; }));
+  EXPECT_TRUE(refused(1, [](Light& l) { l.colour.g = -0.1f; }));
+  EXPECT_TRUE(refused(1, [](Light& l) { l.colour = Vec3(1e30f), l.intensity = 1e30f; }));
+  EXPECT_TRUE(refused(0, [&](Light& l) { l.position.z = nan; }));
+  EXPECT_TRUE(refused(2, [](Light& l) { l.direction = Vec3(0); }));
+  EXPECT_TRUE(refused(0, [](Light& l) { l.range = 0; }));
+  EXPECT_TRUE(refused(3, [](Light& l) { l.area = -2; }));
+  EXPECT_TRUE(refused(1, [&](Light& l) { l.outer_cone = nan; }));
+  const auto moved = [](Light& l) { l.position.y += 0.1f; };
+  EXPECT_TRUE(refused(4, moved, [](std::size_t light, std::span<float> v) {
+    std::fill(v.begin(), v.end(), light == 4 ? -0.5f : 1.0f);
+  }));
+  EXPECT_TRUE(refused(4, moved, [&](std::size_t light, std::span<float> v) {
+    std::fill(v.begin(), v.end(), light == 4 ? nan : 1.0f);
+  }));
+  LightSet bright = lights;
+  bright[0].intensity = 1e30f;
+  EXPECT_THROW(relighter.entryIrradiance(bright), Error);
+  auto wrong = entries;
+  wrong[5].rgb.g = nan;
+  EXPECT_THROW(relighter.relight(wrong), Error);
+  EXPECT_EQ(copy(relighter.relight(entries)), exits);
+  EXPECT_EQ(copy(relighter.entryIrradiance(lights)), entries);
+}
+
+// A transfer of one component, whose planes are what the exits shall have: red grows with the column, green
+// with the row of the block; blue tells the charts apart.
+asset::Asset fieldOfBlocks(std::uint32_t side) {
+  asset::Asset bake =
+      madeBake({.tiles = 1, .clusters = 1, .rank = 1, .overlap = 0, .exact_rank = true}, side);
+  asset::Transfer t = asset::readTransfer(bake.layers[0], bake.atlas);
+  for (std::uint32_t exit = 0; exit < 100; ++exit) {
+    t.matrix.planes8[exit] = static_cast<std::int8_t>(exit % 10);
+    t.matrix.planes8[100 + exit] = static_cast<std::int8_t>(exit / 10);
+    t.matrix.planes8[200 + exit] = exit % 10 < 5 ? 20 : 0;
+  }
+  std::fill(t.matrix.weights8.begin(), t.matrix.weights8.end(), std::int8_t{127});
+  t.matrix.scale[0] = 1;
+  bake.layers[0].tables = asset::transferTables(t, bake.atlas);
+  return bake;
+}
+
+TEST(TransferRelighter, TexelsAreBilinearWithinTheirChart) {
+  for (const std::uint32_t side : {1u, 4u, 5u}) {
+    const asset::Asset bake = fieldOfBlocks(side);
+    TransferRelighter relighter(bake, bake.layers[0]);
+    for (const Irradiance& e : relighter.texels()) EXPECT_EQ(e, Irradiance());
+    std::vector<Irradiance> unit(40);
+    unit[17] = Irradiance(1.0f);
+    relighter.relight(unit);
+    const auto texels = relighter.texels();
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      const std::uint32_t width = 10 * side, x = bake.atlas.texel[i] % width, y = bake.atlas.texel[i] / width;
+      // Beyond the middle of a chart's last block its value holds.
+      const auto along = [&](std::uint32_t texel, float first, float last) {
+        return std::clamp((static_cast<float>(texel) + 0.5f) / static_cast<float>(side) - 0.5f, first, last);
+      };
+      EXPECT_NEAR(texels[i].rgb.r, x < width / 2 ? along(x, 0, 4) : along(x, 5, 9), 1e-3f) << x << ' ' << y;
+      EXPECT_NEAR(texels[i].rgb.g, along(y, 0, 9), 1e-3f) << x << ' ' << y;
+      EXPECT_NEAR(texels[i].rgb.b, x < width / 2 ? 20 : 0, 1e-3f) << x << ' ' << y;
+    }
+  }
+}
+
+// Over an edge within a chart nothing blends.
+TEST(TransferRelighter, BlocksThatFaceElsewhereDoNotBlend) {
+  asset::Asset bake = fieldOfBlocks(4);
+  for (std::size_t i = 0; i < bake.atlas.texel.size(); ++i)
+    if (bake.atlas.texel[i] % 40 >= 8) bake.atlas.normal[i] = {1, 0, 0};
+  TransferRelighter relighter(bake, bake.layers[0]);
+  std::vector<Irradiance> unit(40);
+  unit[0] = Irradiance(1.0f);
+  relighter.relight(unit);
+  const auto texels = relighter.texels();
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const std::uint32_t x = bake.atlas.texel[i] % 40;
+    if (x < 6 || x >= 10) continue;
+    EXPECT_NEAR(texels[i].rgb.r, x < 8 ? 1 : 2, 1e-3f) << x;
+  }
+}
+
+TEST(TransferRelighter, LayersWithoutTransferAreAMismatch) {
+  asset::Asset bake = madeBake({});
+  bake.layers[0].tables.clear();
+  try {
+    TransferRelighter relighter(bake, bake.layers[0]);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::kMismatch);
+  }
+}
+
+}  // namespace
+}  // namespace relume::relight
