@@ -90,4 +90,17 @@ std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Te
   return result;
 }
 
+MeanReflectance meanReflectance(const scene::Scene& scene, const atlas::Texels& texels, Materials materials) {
+  const std::vector<ggx::Reflected> means = meansByRoughness();
+  const std::vector<Reflectance> all = reflectances(scene, texels, materials);
+  MeanReflectance result;
+  result.value.reserve(all.size()), result.direct.reserve(all.size());
+  for (const Reflectance& r : all) {
+    const ggx::Reflected& mean = means[r.roughness];
+    result.value.push_back(glm::min(r.diffuse + r.scale * mean.scale + r.bias * mean.bias, Vec3(1.0f)));
+    result.direct.push_back(r.direct);
+  }
+  return result;
+}
+
 }  // namespace relume::transport

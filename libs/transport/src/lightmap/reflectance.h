@@ -44,4 +44,11 @@ class GlossTable {
 std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Texels& texels,
                                       Materials materials);
 
+/// By point: for light that comes evenly from everywhere, and the factor for direct light (Reflectance).
+struct MeanReflectance {
+  std::vector<Vec3> value;
+  std::vector<float> direct;
+};
+MeanReflectance meanReflectance(const scene::Scene& scene, const atlas::Texels& texels, Materials materials);
+
 }  // namespace relume::transport

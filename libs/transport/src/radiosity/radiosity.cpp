@@ -2,7 +2,6 @@
 #include "radiosity/radiosity.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lightmap/reflectance.h"
@@ -18,34 +17,6 @@ namespace relume::transport {
 namespace {
 
 constexpr std::size_t kGrain = 256;  // patches
-
-/// Of each texel, for light that comes evenly from everywhere; and the factor for direct light (Reflectance).
-struct MeanReflectance {
-  std::vector<Vec3> value;
-  std::vector<float> direct;
-};
-MeanReflectance meanReflectance(const RadiosityScene& scene, Materials materials) {
-  constexpr std::size_t kSteps = 64;
-  std::vector<float> cosines(kSteps);
-  for (std::size_t i = 0; i < kSteps; ++i)  // cos^2 is uniform
-    cosines[i] = std::sqrt((static_cast<float>(i) + 0.5f) / kSteps);
-  const GlossTable gloss(cosines);
-  std::array<ggx::Reflected, GlossTable::kRoughnesses> means{};
-  for (std::size_t r = 0; r < means.size(); ++r)
-    for (std::size_t i = 0; i < kSteps; ++i) {
-      const ggx::Reflected share = gloss.at(static_cast<std::uint8_t>(r), i);
-      means[r].scale += share.scale / kSteps, means[r].bias += share.bias / kSteps;
-    }
-  const std::vector<Reflectance> all = reflectances(scene.tracer.scene(), scene.texels, materials);
-  MeanReflectance result;
-  result.value.reserve(all.size()), result.direct.reserve(all.size());
-  for (const Reflectance& r : all) {
-    const ggx::Reflected& mean = means[r.roughness];
-    result.value.push_back(glm::min(r.diffuse + r.scale * mean.scale + r.bias * mean.bias, Vec3(1.0f)));
-    result.direct.push_back(r.direct);
-  }
-  return result;
-}
 
 /// Light that is no patch, what patches are, and what their equations then say.
 struct Equations {
@@ -75,7 +46,7 @@ class Solver {
         factors_(formFactors()) {}
 
   RadianceCache::Known known() {
-    const MeanReflectance texel = meanReflectance(scene_, task_.materials);
+    const MeanReflectance texel = meanReflectance(scene_.tracer.scene(), scene_.texels, task_.materials);
     const Equations fine = equations(texel);
     const std::vector<Vec3> arriving = solved(fine, factors_);
     progress_.throwIfCancelled();

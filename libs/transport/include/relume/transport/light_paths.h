@@ -65,7 +65,8 @@ struct Exit {
   std::uint32_t x = 0, y = 0;  ///< of the block in its page, in blocks
   Point position{0};           ///< in the middle, on the surface
   Normal normal{0, 0, 1};
-  float area = 0;  ///< m^2
+  float area = 0;       ///< m^2, of what can be seen
+  bool filled = false;  ///< none of it can be seen; it has the light of an exit beside it
 };
 
 struct Exits {
@@ -73,6 +74,8 @@ struct Exits {
   std::vector<Exit> all;   ///< by page, row and column of blocks
   /// By index into Texels::points. Two exits can share a block of a chart, where it goes round an edge.
   std::vector<std::uint32_t> of_texel;
+  /// By index into Texels::points: inside other geometry, so its own irradiance is no part of its exit's.
+  std::vector<std::uint8_t> buried;
   std::size_t size() const { return all.size(); }
 };
 

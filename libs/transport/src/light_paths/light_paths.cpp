@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+// T_xe = sum over gather rays of x, each with its share s:
+//   s rho (1 where the ray ends on e, + G_je of the element j where it ends),
+// with rho the reflectance of the texel where the ray ends and G_je the irradiance on element j after any
+// number of reflections, per unit irradiance on entry e (ElementLight). So what light does first, on its way
+// from the entry to the exit, is as fine as texels are; elements make only what comes after.
+#include "relume/transport/light_paths.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <mutex>
+
+#include "direction_batch.h"
+#include "light_paths/clusters.h"
+#include "light_paths/elements.h"
+#include "light_paths/exit_rays.h"
+#include "light_paths/exit_tiles.h"
+#include "light_paths/light_search.h"
+#include "light_paths/places.h"
+#include "light_paths/vector_row.h"
+#include "relume/core/check.h"
+#include "relume/core/error.h"
+#include "relume/core/parallel.h"
+#include "relume/core/sampling.h"
+
+namespace relume::transport {
+namespace {
+
+constexpr std::size_t kMostPieces = 1u << 16;
+// What a turn of the normal costs in clusters (Clusters).
+constexpr float kEntryNormalWeight = 4.0f, kElementNormalWeight = 4.0f;
+constexpr double kResidual = 1e-4;
+constexpr std::uint32_t kFewestExitRays = 16;  // of a texel
+constexpr std::uint32_t kPiecePlaces = 4;      // where light on a piece is taken
+constexpr std::size_t kExitGrain = 64;
+
+void require(bool good, const char* what, const char* remedy) {
+  if (!good) throw Error(ErrorCode::kUsage, "light paths", what, remedy);
+}
+
+LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels) {
+  require(o.entries > 0 && o.entries <= 1u << 16, "entries are not between 1 and 65536", "1024 suit a hall");
+  require(o.entry_samples > 0 && o.entry_samples <= 1024, "samples of an entry are not between 1 and 1024",
+          "16 are enough for lights that keep away from walls");
+  require(o.elements > 0 && o.elements <= 1u << 16, "elements are not between 1 and 65536", "8192 do");
+  require(o.element_rays > 0 && o.exit_rays > 0, "no rays", "ask for some hundreds");
+  require(o.exit_rays <= kMaxSequence, "more than 65536 rays of an exit", "1024 do");
+  require(o.exit_side >= 1 && o.exit_side <= 64, "exits of no or too many texels",
+          "take 1 to 64 along a side");
+  require(o.tile_exits > 0 && o.tile_overlap >= 0.0f && o.tile_overlap <= 4.0f, "impossible tiles",
+          "256 exits and an overlap of 0.3 are usual");
+  if (texels.points.empty())
+    throw Error(ErrorCode::kEmptyScene, "light paths", "there are no texels", "bake a static mesh");
+  return o;
+}
+
+std::vector<Box3> boxesOf(const LightPathOptions& options, const atlas::Texels& texels) {
+  if (!options.light_boxes.empty()) return options.light_boxes;
+  Box3 box;
+  for (const atlas::SurfacePoint& p : texels.points) box.add(p.position);
+  return {box};
+}
+
+/// An exit that is wholly buried takes its light from one of its chart that is not, if any is near.
+std::vector<std::uint32_t> gatheredFrom(const Patches& exits, const Sides& sides) {
+  constexpr int kRings = 8;  // of blocks
+  std::vector<std::uint32_t> from(exits.size());
+  struct Key {
+    std::uint32_t page, y, x, chart;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::vector<std::pair<Key, std::uint32_t>> open;
+  std::vector<std::uint32_t> buried;
+  for (std::uint32_t i = 0; i < exits.size(); ++i) {
+    from[i] = i;
+    const Patch& p = exits.all[i];
+    if (sides.buried(exits.membersOf(i)[0])) {
+      buried.push_back(i);
+    } else {
+      open.push_back({{p.page, p.y, p.x, p.chart}, i});
+    }
+  }
+  std::sort(open.begin(), open.end());
+  for (const std::uint32_t i : buried) {
+    const Patch& p = exits.all[i];
+    float best = kInfinity;
+    for (int dy = -kRings; dy <= kRings; ++dy) {
+      if (static_cast<int>(p.y) + dy < 0) continue;
+      const auto y = static_cast<std::uint32_t>(static_cast<int>(p.y) + dy);
+      const auto x = static_cast<std::uint32_t>(std::max(static_cast<int>(p.x) - kRings, 0));
+      for (auto it = std::lower_bound(open.begin(), open.end(), std::pair(Key{p.page, y, x, 0}, 0u));
+           it != open.end() && it->first.page == p.page && it->first.y == y && it->first.x <= p.x + kRings;
+           ++it) {
+        const Patch& q = exits.all[it->second];
+        if (q.chart != p.chart || glm::dot(q.geometric_normal, p.geometric_normal) < 0.7f) continue;
+        const float distance = glm::length(q.centre - p.centre);
+        if (distance < best) best = distance, from[i] = it->second;
+      }
+    }
+  }
+  return from;
+}
+
+}  // namespace
+
+struct LightPaths::Impl {
+  Impl(const trace::Tracer& the_tracer, const atlas::Atlas& atlas, const atlas::Texels& the_texels,
+       const LightPathOptions& the_options, Progress& progress)
+      : tracer(the_tracer),
+        texels(the_texels),
+        options(checked(the_options, the_texels)),
+        boxes(boxesOf(options, texels)),
+        lookup(tracer.scene(), atlas, texels),
+        exposure(tracer, texels),
+        groups(texels),
+        reflectance(meanReflectance(tracer.scene(), texels, options.materials)),
+        surface{tracer, texels, lookup, exposure},
+        sides(surface, groups, std::uint64_t{options.element_rays} * options.elements, options.seed,
+              progress),
+        pieces(makePieces(texels, sides, kMostPieces)),
+        exit_patches(makePatches(texels, options.exit_side, sides.buriedPoints())),
+        gathered_from(gatheredFrom(exit_patches, sides)),
+        directions(firstExitRays(), std::max(firstExitRays(), std::bit_ceil(options.exit_rays)),
+                   options.seed + 0x9e3779b97f4a7c15u, BlockSamples::kShared),
+        exit_scene{surface,    exit_patches,      sides,       pieces, elements, reflectance,
+                   directions, options.exit_rays, options.seed} {
+    placeExits(progress);
+    placeEntries(progress);
+    makeElementsOf(progress);
+    light = std::make_unique<ElementLight>(
+        elements, entries.size(),
+        [&](std::size_t block, std::span<float> radiosity) { fill(block, radiosity); }, kResidual, progress);
+    ray_count = sides.rays();
+  }
+
+  std::uint32_t firstExitRays() const {
+    const std::uint32_t area = options.exit_side * options.exit_side;
+    return std::max(std::bit_ceil((options.exit_rays + area - 1) / area), kFewestExitRays);
+  }
+
+  void placeExits(Progress& progress) {
+    exits.side = options.exit_side;
+    for (const Patch& p : exit_patches.all)
+      exits.all.push_back({p.chart, p.page, p.x, p.y, p.centre, p.normal, p.area,
+                           sides.buried(exit_patches.members[p.first])});
+    exits.of_texel = exit_patches.patch_of;
+    exits.buried.assign(sides.buriedPoints().begin(), sides.buriedPoints().end());
+    tiles = makeTiles(exits.all, options.tile_exits, options.tile_overlap, options.seed, progress);
+  }
+
+  void placeEntries(Progress& progress) {
+    const Stage stage(progress, "entries", 1);
+    Clusters clusters = makeClusters(pieces.all, options.entries, kEntryNormalWeight, options.seed, progress);
+    partAtWalls(tracer, pieces.all, clusters, progress);
+    entry_of_piece = clusters.of;
+    std::vector<std::uint32_t> of_side(sides.size(), scene::kNone);
+    for (std::size_t side = 0; side < of_side.size(); ++side)
+      if (pieces.of_side[side] != scene::kNone) of_side[side] = entry_of_piece[pieces.of_side[side]];
+    const Members members = membersOf(of_side, clusters.size());
+    entry_places = placesOn(texels, sides, members, options.entry_samples, options.seed);
+    entries.samples_each = options.entry_samples;
+    for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
+    entries.area.assign(clusters.size(), 0.0f);
+    for (std::size_t i = 0; i < pieces.size(); ++i) entries.area[entry_of_piece[i]] += pieces.all[i].area;
+    for (const Feature& c : clusters.centre) {
+      entries.centre.emplace_back(c[0], c[1], c[2]);
+      const Vec3 n(c[3], c[4], c[5]);
+      entries.normal.push_back(glm::length(n) > 0 ? glm::normalize(n) : Normal(0, 0, 1));
+    }
+  }
+
+  void makeElementsOf(Progress& progress) {
+    Clusters clusters =
+        makeClusters(pieces.all, options.elements, kElementNormalWeight, options.seed + 1, progress);
+    partAtWalls(tracer, pieces.all, clusters, progress);
+    elements = makeElements(sides, pieces, reflectance, clusters.of, clusters.size(), progress);
+  }
+
+  /// What elements send out of light on entries.
+  void fill(std::size_t block, std::span<float> radiosity) const {
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      for (const Weight& w : elements.sourcesOf(i)) {
+        const std::size_t entry = entry_of_piece[w.index];
+        if (entry / ElementLight::kBlock != block) continue;
+        float* at = radiosity.data() + i * ElementLight::kRow + entry % ElementLight::kBlock;
+        for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(c) * ElementLight::kBlock] += w.value[c];
+      }
+  }
+
+  void rows(std::size_t tile, std::span<float> out) const {
+    const auto of =
+        std::span(tiles.row).subspan(tiles.first[tile], tiles.first[tile + 1] - tiles.first[tile]);
+    const std::size_t columns = entries.size();
+    RELUME_CHECK_EQ(out.size(), of.size() * 3 * columns);
+    std::fill(out.begin(), out.end(), 0.0f);
+    ExitRays exit_rays(exit_scene);
+    ExitView view;
+    std::vector<Weight> weights;
+    std::vector<std::size_t> first(1, 0);
+    for (std::size_t r = 0; r < of.size(); ++r) {
+      exit_rays.look(gathered_from[of[r]], view);
+      float* row = out.data() + r * 3 * columns;
+      for (const Weight& w : view.direct)
+        for (std::size_t c = 0; c < 3; ++c)
+          row[c * columns + entry_of_piece[w.index]] += w.value[static_cast<int>(c)];
+      weights.insert(weights.end(), view.reflected.begin(), view.reflected.end());
+      first.push_back(weights.size());
+    }
+    for (std::size_t block = 0; block < light->blocks(); ++block) {
+      const std::size_t begin = block * ElementLight::kBlock,
+                        count = std::min(ElementLight::kBlock, columns - begin);
+      for (std::size_t r = 0; r < of.size(); ++r) {
+        const std::array<float, ElementLight::kRow> sum =
+            gather(*light, block, std::span(weights).subspan(first[r], first[r + 1] - first[r]));
+        float* row = out.data() + r * 3 * columns + begin;
+        for (std::size_t c = 0; c < 3; ++c)
+          for (std::size_t k = 0; k < count; ++k) row[c * columns + k] += sum[c * ElementLight::kBlock + k];
+      }
+    }
+  }
+
+  static std::array<float, ElementLight::kRow> gather(const ElementLight& of, std::size_t block,
+                                                      std::span<const Weight> weights) {
+    constexpr std::size_t kBlock = ElementLight::kBlock;
+    std::array<VectorRow<kBlock>, 3> row;
+    for (auto& channel : row) channel.clear();
+    for (const Weight& w : weights) {
+      const float* from = of.of(block, w.index);
+      row[0].add(w.value.x, from), row[1].add(w.value.y, from + kBlock),
+          row[2].add(w.value.z, from + 2 * kBlock);
+    }
+    std::array<float, ElementLight::kRow> sum;
+    for (std::size_t c = 0; c < 3; ++c) row[c].store(sum.data() + c * kBlock);
+    return sum;
+  }
+
+  /// Of lights, means over `each` places of every group. Shape: [lights][groups]
+  std::vector<Vec3> lightOn(std::span<const Light> lights, std::span<const Place> places, std::uint32_t each,
+                            Progress& progress) const {
+    const std::size_t count = places.size() / each;
+    std::vector<Vec3> result(lights.size() * count);
+    const Stage stage(progress, "direct light", result.size());
+    parallelFor(
+        result.size(), 64,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t group = i % count;
+            Vec3 sum(0.0f);
+            for (std::uint32_t k = 0; k < each; ++k)
+              sum += lightAt(tracer, places[group * each + k], lights[i / count],
+                             hashCombine(static_cast<std::uint32_t>(group), k))
+                         .rgb;
+            result[i] = sum / static_cast<float>(each);
+          }
+        },
+        &progress);
+    return result;
+  }
+
+  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by, Progress& progress) const {
+    std::vector<Vec3> on_piece;  // [lights][pieces]
+    if (by == LitBy::kEntries) {
+      const std::vector<Vec3> on_entry = lightOn(lights, entry_places, options.entry_samples, progress);
+      on_piece.resize(lights.size() * pieces.size());
+      for (std::size_t l = 0; l < lights.size(); ++l)
+        for (std::size_t p = 0; p < pieces.size(); ++p)
+          on_piece[l * pieces.size() + p] = on_entry[l * entries.size() + entry_of_piece[p]];
+    } else {
+      const std::vector<Place> places =
+          placesOn(texels, sides, membersOf(pieces.of_side, pieces.size()), kPiecePlaces, options.seed + 2);
+      on_piece = lightOn(lights, places, kPiecePlaces, progress);
+    }
+    const ElementLight reflected(
+        elements, lights.size(),
+        [&](std::size_t block, std::span<float> radiosity) {
+          const std::size_t begin = block * ElementLight::kBlock,
+                            end = std::min(begin + ElementLight::kBlock, lights.size());
+          for (std::size_t i = 0; i < elements.size(); ++i)
+            for (const Weight& w : elements.sourcesOf(i))
+              for (std::size_t l = begin; l < end; ++l) {
+                const Vec3 b = w.value * on_piece[l * pieces.size() + w.index];
+                float* at = radiosity.data() + i * ElementLight::kRow + (l - begin);
+                for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(c) * ElementLight::kBlock] += b[c];
+              }
+        },
+        kResidual, progress);
+    std::vector<Irradiance> result(lights.size() * exits.size());
+    const Stage stage(progress, "exits", exits.size());
+    parallelFor(
+        exits.size(), kExitGrain,
+        [&](std::size_t begin, std::size_t end) {
+          ExitRays exit_rays(exit_scene);
+          ExitView view;
+          for (std::size_t x = begin; x < end; ++x) {
+            exit_rays.look(gathered_from[x], view);
+            for (std::size_t block = 0; block < reflected.blocks(); ++block) {
+              const auto sum = gather(reflected, block, view.reflected);
+              const std::size_t first = block * ElementLight::kBlock;
+              for (std::size_t l = first; l < std::min(first + ElementLight::kBlock, lights.size()); ++l) {
+                Vec3 e(sum[l - first], sum[ElementLight::kBlock + l - first],
+                       sum[2 * ElementLight::kBlock + l - first]);
+                for (const Weight& w : view.direct) e += w.value * on_piece[l * pieces.size() + w.index];
+                result[l * exits.size() + x] = Irradiance(e);
+              }
+            }
+          }
+        },
+        &progress);
+    return result;
+  }
+
+  const trace::Tracer& tracer;
+  const atlas::Texels& texels;
+  const LightPathOptions options;
+  const std::vector<Box3> boxes;
+  const TexelLookup lookup;
+  const Exposure exposure;
+  const TexelGroups groups;
+  const MeanReflectance reflectance;
+  const SurfaceScene surface;
+  const Sides sides;
+  const Pieces pieces;
+  const Patches exit_patches;
+  const std::vector<std::uint32_t> gathered_from;  // by exit
+  const SampleTable directions;
+  std::vector<std::uint32_t> entry_of_piece;
+  std::vector<Place> entry_places;
+  Entries entries;
+  Exits exits;
+  ExitTiles tiles;
+  Elements elements;
+  std::unique_ptr<ElementLight> light;
+  const ExitScene exit_scene;
+  std::uint64_t ray_count = 0;
+};
+
+LightPaths::LightPaths(const trace::Tracer& tracer, const atlas::Atlas& atlas, const atlas::Texels& texels,
+                       const LightPathOptions& options, Progress& progress)
+    : impl_(std::make_unique<Impl>(tracer, atlas, texels, options, progress)) {}
+LightPaths::~LightPaths() = default;
+LightPaths::LightPaths(LightPaths&&) noexcept = default;
+
+const Entries& LightPaths::entries() const { return impl_->entries; }
+const Exits& LightPaths::exits() const { return impl_->exits; }
+const ExitTiles& LightPaths::tiles() const { return impl_->tiles; }
+float LightPaths::spacing() const {
+  return static_cast<float>(std::sqrt(impl_->pieces.area() / static_cast<double>(impl_->entries.size())));
+}
+std::uint64_t LightPaths::bytes() const {
+  const Impl& i = *impl_;
+  return i.light->bytes() + i.sides.size() * (std::uint64_t{i.sides.raysEach()} * sizeof(SideOfTexel) + 12);
+}
+std::uint64_t LightPaths::rays() const { return impl_->ray_count; }
+
+void LightPaths::rows(std::size_t tile, std::span<float> out) const { impl_->rows(tile, out); }
+
+LightSet LightPaths::lights(std::uint32_t count, const LightPlaces& places, std::uint64_t seed,
+                            Progress& progress) const {
+  return findLights(impl_->tracer, impl_->boxes, count, places, seed, progress);
+}
+
+std::vector<float> LightPaths::entryIrradiance(std::span<const Light> lights, Progress& progress) const {
+  LightSet white(lights.begin(), lights.end());
+  for (Light& light : white) light.colour = Vec3(1.0f);
+  const std::vector<Vec3> all =
+      impl_->lightOn(white, impl_->entry_places, impl_->options.entry_samples, progress);
+  std::vector<float> result;
+  result.reserve(all.size());
+  for (const Vec3& e : all) result.push_back(e.x);
+  return result;
+}
+
+std::vector<Irradiance> LightPaths::irradiance(std::span<const Light> lights, LitBy by,
+                                               Progress& progress) const {
+  return impl_->irradiance(lights, by, progress);
+}
+
+}  // namespace relume::transport

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Places all over groups of texel sides: where direct light on them is taken.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "light_paths/members.h"
+#include "light_paths/sides.h"
+#include "relume/core/light.h"
+
+namespace relume::transport {
+
+struct Place {
+  Point position{0};
+  Normal shading_normal{0, 0, 1}, geometric_normal{0, 0, 1};
+};
+
+/// `each` places on every group, equal shares of its area each: strata along a curve through the group.
+/// Shape: [groups][each]. Every group has a member.
+std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, const Members& groups,
+                            std::uint32_t each, std::uint64_t seed);
+
+/// Irradiance at a place from one light, with a shadow ray to its middle; light from behind the surface does
+/// not count. `stream`: of decisions about alpha.
+Irradiance lightAt(const trace::Tracer& tracer, const Place& place, const Light& light, std::uint32_t stream);
+
+}  // namespace relume::transport
