@@ -35,13 +35,20 @@ image::Image toImage(const asset::Asset& asset, const asset::Plane& plane, bool 
   return out;
 }
 
+/// Planes may be named after lamps, which may be named anything.
+std::string fileName(std::string name) {
+  for (char& c : name)
+    if (c == '/' || c == '\\' || c == ':' || static_cast<unsigned char>(c) < ' ') c = '_';
+  return name;
+}
+
 void exportLayer(const ExportOptions& options, Progress&) {
   namespace fs = std::filesystem;
   const asset::Asset asset = asset::readAsset(options.asset);
   const asset::Layer& layer = asset.layer(options.layer);
   makeFolder(options.folder);
   for (const asset::Plane& plane : layer.planes) {
-    const std::string stem = layer.planes.size() == 1 ? layer.name : layer.name + "-" + plane.name;
+    const std::string stem = layer.planes.size() == 1 ? layer.name : layer.name + "-" + fileName(plane.name);
     const fs::path path = fs::path(options.folder) / (stem + "." + options.format);
     image::writeImage(path, toImage(asset, plane, options.format == "png"));
     fmt::print("{}\n", path.string());

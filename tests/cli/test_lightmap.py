@@ -64,6 +64,20 @@ class Lightmap(test_cli.CliTest):
             values.append(self.mean())
         self.assertAlmostEqual(values[1], 3 * values[0], delta=0.01 * values[1])
 
+    def test_groups_of_lights_sum_to_the_lightmap(self):
+        lights = self.folder / "lights.json"
+        lamps = [{"type": "point", "intensity": 5, "position": [1, 2, 1], "color": colour, "group": group, "name": name}
+                 for colour, group, name in (([1, 0, 0], "warm/left", "a"), ([1, 1, 0], "", "b"), ([0, 0, 1], "warm/left", "c"))]
+        lamps[1].pop("group")
+        lights.write_text(json.dumps(lamps))
+        self.bake("--layer", "lightgroups", "--layer", "lightmap", "--lights", lights)
+        printed = relume("export", self.baked, "--layer", "lightgroups", "-o", self.folder / "groups").stdout.split("\n")
+        self.assertEqual([pathlib.Path(p).name for p in printed if p], ["lightgroups-warm_left.exr", "lightgroups-b.exr"])
+        means = [[sum(plane) / len(plane) for plane in (glb.read_exr(path)[2][c] for c in "RGB")] for path in printed if path]
+        for c in range(3):
+            self.assertAlmostEqual(means[0][c] + means[1][c], self.mean(channel=c), delta=0.01 * self.mean(channel=c))
+        self.assertLess(means[0][1], 0.01 * means[1][1])
+
     def test_nothing_that_shines_is_said(self):
         b = glb.Builder()
         b.node(b.quads([([-2, 0, -2], [0, 0, 4], [4, 0, 0])], b.material([0.5, 0.5, 0.5]), "floor"))

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lightmap_layer.h"
 
+#include <cmath>
+
 #include "relume/core/check.h"
+#include "relume/scene/light_groups.h"
 #include "relume/transport/lightmap.h"
 #include "relume/transport/occlusion.h"
 #include "scene_digest.h"
@@ -35,7 +38,7 @@ LightmapOptions optionsOf(const LayerContext& context, const Parameters& paramet
   options.method = solver == "path"        ? transport::LightmapMethod::kPath
                    : solver == "radiosity" ? transport::LightmapMethod::kRadiosity
                                            : transport::LightmapMethod::kGather;
-  options.radiosity = radiosityOf(parameters);
+  if (parameters.contains("patch")) options.radiosity = radiosityOf(parameters);
   options.part = part == "direct"     ? transport::Part::kDirect
                  : part == "indirect" ? transport::Part::kIndirect
                                       : transport::Part::kTotal;
@@ -54,7 +57,8 @@ LightmapOptions optionsOf(const LayerContext& context, const Parameters& paramet
 void addLights(const scene::Scene& scene, Hasher& hasher) {
   hasher.add(scene.lights.size());
   for (const Light& l : scene.lights)
-    hasher.add(l.kind)
+    hasher.add(std::string_view(l.group))
+        .add(l.kind)
         .add(l.colour)
         .add(l.intensity)
         .add(l.range)
@@ -84,7 +88,8 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
       .add(o.target_error)
       .add(o.smoothed)
       .add(o.cache_samples)
-      .add(o.seed);
+      .add(o.seed)
+      .add(std::string_view(o.group));
   if (o.method == transport::LightmapMethod::kRadiosity)
     hasher
         .add("radiosity 1")  // as above
@@ -103,14 +108,29 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
   return hasher.digest();
 }
 
-PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const float> rows) {
+/// Fills what lies at `at` in rows of `row` floats.
+std::uint64_t solveRows(transport::LightmapSolver& solver, std::span<const std::uint32_t> which,
+                        std::span<float> rows, std::size_t row, std::size_t at, Progress& progress) {
+  if (which.empty()) return 0;
+  const transport::LightmapResult result = solver.solve(progress, which);
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    float* out = rows.data() + i * row + at;
+    for (int c = 0; c < 3; ++c) out[c] = result.value[i].rgb[c];
+    out[kErrorAt] = result.error[i];
+    out[kBackAt] = result.back_share[i];
+  }
+  return result.rays;
+}
+
+PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const float> rows,
+                      std::size_t stride, std::size_t at, const std::string& name) {
   const std::size_t points = texels.points.size();
-  RELUME_CHECK_EQ(rows.size(), points * kRow);
+  RELUME_CHECK_EQ(rows.size(), points * stride);
   PointLayer layer;
-  PointPlane value{.name = "value", .channels = 3, .values = std::vector<float>(points * 3)};
+  PointPlane value{.name = name, .channels = 3, .values = std::vector<float>(points * 3)};
   layer.error.resize(points), layer.valid.resize(points);
   for (std::size_t i = 0; i < points; ++i) {
-    const float* row = rows.data() + i * kRow;
+    const float* row = rows.data() + i * stride + at;
     std::copy_n(row, 3, &value.values[i * 3]);
     layer.error[i] = row[kErrorAt];
     layer.valid[i] = row[kBackAt] <= transport::kBuriedShare;
@@ -135,19 +155,61 @@ LayerJob prepareLightmap(const LayerContext& context, const Parameters& paramete
       std::make_shared<transport::LightmapSolver>(context.tracer, context.atlas, context.texels, options);
   job.solver.solve = [solver](std::span<const std::uint32_t> which, std::span<float> rows,
                               Progress& progress) {
-    if (which.empty()) return std::uint64_t{0};
-    const transport::LightmapResult result = solver->solve(progress, which);
-    for (std::size_t i = 0; i < which.size(); ++i) {
-      float* row = rows.data() + i * kRow;
-      for (int c = 0; c < 3; ++c) row[c] = result.value[i].rgb[c];
-      row[kErrorAt] = result.error[i];
-      row[kBackAt] = result.back_share[i];
-    }
-    return result.rays;
+    return solveRows(*solver, which, rows, kRow, 0, progress);
   };
   const atlas::Texels& texels = context.texels;
   const bool filter = context.quality.filter;
-  job.finish = [&texels, filter](std::span<const float> rows) { return finishRows(texels, filter, rows); };
+  job.finish = [&texels, filter](std::span<const float> rows) {
+    return finishRows(texels, filter, rows, kRow, 0, "value");
+  };
+  return job;
+}
+
+LayerJob prepareLightGroups(const LayerContext& context, const Parameters& parameters) {
+  const std::vector<std::string> groups = scene::lightGroups(context.tracer.scene());
+  struct Group {
+    std::string name;
+    transport::LightmapSolver solver;
+  };
+  // Solvers are heavy only while they hold a cache, which they fill at their first texel.
+  auto solvers = std::make_shared<std::vector<Group>>();
+  LightmapOptions options = optionsOf(context, parameters);
+  Hasher key;
+  for (const std::string& group : groups) {
+    options.group = group;
+    key.add(keyOf(options, context.tracer.scene()));
+    solvers->push_back({group, {context.tracer, context.atlas, context.texels, options}});
+  }
+  const std::size_t row = kRow * groups.size();
+  LayerJob job;
+  job.solver.row = static_cast<int>(row);
+  job.solver.key = key.digest();
+  job.solver.solve = [solvers, row](std::span<const std::uint32_t> which, std::span<float> rows,
+                                    Progress& progress) {
+    std::uint64_t rays = 0;
+    for (std::size_t g = 0; g < solvers->size(); ++g)
+      rays += solveRows((*solvers)[g].solver, which, rows, row, g * kRow, progress);
+    return rays;
+  };
+  const atlas::Texels& texels = context.texels;
+  const bool filter = context.quality.filter;
+  job.finish = [&texels, filter, groups, row](std::span<const float> rows) {
+    PointLayer layer;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      PointLayer own = finishRows(texels, filter, rows, row, g * kRow, groups[g]);
+      if (g == 0) {
+        layer = std::move(own);
+        continue;
+      }
+      layer.planes.push_back(std::move(own.planes[0]));
+      // Groups are independent: the error of their sum.
+      for (std::size_t i = 0; i < layer.error.size(); ++i) {
+        layer.error[i] = std::hypot(layer.error[i], own.error[i]);
+        layer.valid[i] = layer.valid[i] && own.valid[i];
+      }
+    }
+    return layer;
+  };
   return job;
 }
 

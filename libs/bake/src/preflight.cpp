@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "baked_layer.h"
 #include "forecast.h"
 #include "prepared.h"
 #include "relume/core/memory.h"
@@ -6,6 +7,36 @@
 #include "texel_store.h"
 
 namespace relume::bake {
+namespace {
+
+Preflight::Layer planTexels(const PreparedLayer& layer, const LayerContext& context, const Prepared& p,
+                            const BakeOptions& options, Progress& progress) {
+  Preflight::Layer plan{.name = layer.name, .parameters = layer.parameters};
+  const LayerJob job = layer.kind->prepare(context, layer.parameters);
+  const TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));
+  plan.reusable_texels = store.reused(), plan.stale_because = store.staleBecause();
+  const std::vector<std::uint32_t> pending = store.pending();
+  const Stage stage(progress, "pilot of " + layer.name, pending.size());
+  plan.forecast_seconds = forecastSeconds(job.solver, p.texels, pending, progress);
+  return plan;
+}
+
+Preflight::Layer planWhole(const PreparedLayer& layer, const LayerContext& context, const Prepared& p,
+                           const BakeOptions& options, Progress& progress) {
+  Preflight::Layer plan{.name = layer.name, .parameters = layer.parameters};
+  const WholeJob job = layer.kind->prepare_whole(context, layer.parameters);
+  if (isKept(options, p, job.key)) {
+    plan.reusable_texels = p.texels.points.size();
+    return plan;
+  }
+  plan.stale_because = "nothing baked with this geometry and these settings is in the cache";
+  const Stage stage(progress, "pilot of " + layer.name, 1);
+  plan.forecast_seconds = job.forecast(progress);
+  return plan;
+}
+
+}  // namespace
+
 Preflight preflight(const scene::gltf::Document& document, const BakeOptions& options, Progress& progress) {
   Preflight result;
   Statistics statistics;
@@ -23,22 +54,16 @@ Preflight preflight(const scene::gltf::Document& document, const BakeOptions& op
   result.atlas_pages = p.atlas.pages;
   result.atlas = p.atlas.statistics;
   for (const StageTime& stage : statistics.stages) result.forecast_seconds += stage.seconds;
+  const asset::AtlasTable table = tableOf(p);
   for (const PreparedLayer& layer : p.layers) {
     const LayerContext context{.tracer = *p.tracer,
                                .atlas = p.atlas,
                                .texels = p.texels,
+                               .table = table,
                                .quality = p.quality,
                                .seed = options.seed};
-    const LayerJob job = layer.kind->prepare(context, layer.parameters);
-    const TexelStore store(options.cache, p.structure, job.solver, p.texels, placements(p.scene));
-    Preflight::Layer plan{
-        .name = layer.name, .parameters = layer.parameters, .reusable_texels = store.reused()};
-    plan.stale_because = store.staleBecause();
-    const std::vector<std::uint32_t> pending = store.pending();
-    {
-      const Stage stage(progress, "pilot of " + layer.name, pending.size());
-      plan.forecast_seconds = forecastSeconds(job.solver, p.texels, pending, progress);
-    }
+    Preflight::Layer plan = layer.kind->prepare ? planTexels(layer, context, p, options, progress)
+                                                : planWhole(layer, context, p, options, progress);
     result.forecast_seconds += plan.forecast_seconds;
     result.layers.push_back(std::move(plan));
   }

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "relume/core/memory.h"
+#include "relume/core/parallel.h"
 #include "relume/transport/emitters.h"
 #include "scene_digest.h"
 
@@ -142,6 +143,25 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
                             formatSize(options.max_memory)),
                 "use a smaller --atlas-size or a lower --texel-density");
   return p;
+}
+
+asset::AtlasTable tableOf(const Prepared& prepared) {
+  const atlas::Texels& texels = prepared.texels;
+  const bool materials = prepared.materials;
+  asset::AtlasTable table{.width = texels.width, .height = texels.height, .pages = texels.pages};
+  const std::size_t n = texels.points.size();
+  table.texel.resize(n), table.position.resize(n), table.normal.resize(n), table.chart.resize(n);
+  if (materials) table.albedo.resize(n);
+  table.valid.assign(n, 1);
+  parallelFor(n, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const atlas::SurfacePoint& p = texels.points[i];
+      table.texel[i] = p.texel, table.chart[i] = p.chart;
+      table.position[i] = p.position, table.normal[i] = p.shading_normal;
+      if (materials) table.albedo[i] = p.albedo.rgb;
+    }
+  });
+  return table;
 }
 
 std::uint64_t forecastBytes(const Prepared& p) {

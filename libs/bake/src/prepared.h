@@ -35,6 +35,9 @@ std::unique_ptr<Prepared> prepare(const scene::gltf::Document& document, const B
                                   Statistics& statistics, Stopwatch& stopwatch, Warnings& warnings,
                                   Progress& progress);
 
+/// The texels as the file keeps them, all valid.
+asset::AtlasTable tableOf(const Prepared& prepared);
+
 /// Peak memory that the rest of the bake is expected to need, bytes, beyond what is in use now.
 std::uint64_t forecastBytes(const Prepared& prepared);
 

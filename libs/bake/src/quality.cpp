@@ -24,7 +24,11 @@ const Row& row(Quality quality) { return kRows[static_cast<std::size_t>(quality)
 }  // namespace
 
 const char* name(Quality quality) { return row(quality).name; }
-QualitySettings settings(Quality quality) { return row(quality).settings; }
+QualitySettings settings(Quality quality) {
+  QualitySettings result = row(quality).settings;
+  result.quality = quality;
+  return result;
+}
 
 Quality parseQuality(std::string_view text) {
   for (std::size_t i = 0; i < kRows.size(); ++i)

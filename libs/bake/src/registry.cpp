@@ -35,6 +35,16 @@ const ParameterSpec kCorrection{"correction",
                                 {"none", "stewart-langer", "jimenez"},
                                 "brighten by interreflection from the surface's own albedo"};
 
+const ParameterSpec kPart{"part", Type::kChoice, "total", {"total", "direct", "indirect"}, "which light"};
+const ParameterSpec kBounces{
+    "bounces", Type::kCount, "inf", {}, "reflections between a light and a texel; inf: all"};
+const ParameterSpec kMaterials{
+    "materials",
+    Type::kChoice,
+    "full",
+    {"full", "lambert"},
+    "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"};
+
 std::vector<LayerKind> makeRegistry() {
   return {
       {.name = "ao",
@@ -76,13 +86,9 @@ std::vector<LayerKind> makeRegistry() {
              "gather",
              {"gather", "radiosity", "path"},
              "radiosity: light from patches; path: unbiased random walks, slow, to judge others by"},
-            {"part", Type::kChoice, "total", {"total", "direct", "indirect"}, "which light"},
-            {"bounces", Type::kCount, "inf", {}, "reflections between a light and a texel; inf: all"},
-            {"materials",
-             Type::kChoice,
-             "full",
-             {"full", "lambert"},
-             "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"},
+            kPart,
+            kBounces,
+            kMaterials,
             {"patch", Type::kCount, "4", {}, "radiosity: texels along a patch, 1 to 64"},
             {"formfactors",
              Type::kChoice,
@@ -95,6 +101,22 @@ std::vector<LayerKind> makeRegistry() {
              {"gathering", "progressive"},
              "radiosity: row by row, or shooting the patch with the most light left; both end alike"}},
        .prepare = prepareLightmap,
+       .needs_light = true},
+      {.name = "lightgroups",
+       .summary = "irradiance from each group of the scene's lights: to be dimmed, coloured, switched",
+       .emitters = "light groups",
+       .transport = "path-traced",
+       .receivers = "texels, RGB irradiance",
+       .codec = "none",
+       .parameters = {kPart,
+                      kBounces,
+                      kMaterials,
+                      {"solver",
+                       Type::kChoice,
+                       "gather",
+                       {"gather", "path"},
+                       "path: unbiased random walks, slow, to judge others by"}},
+       .prepare = prepareLightGroups,
        .needs_light = true},
   };
 }
@@ -111,6 +133,7 @@ asset::Parameter parseValue(const ParameterSpec& spec, const std::string& text, 
                   fmt::format("use one of {}", fmt::join(spec.choices, ", ")));
     case Type::kLength:
     case Type::kCount:
+    case Type::kShare:
       break;
   }
   double value = 0;
@@ -120,6 +143,12 @@ asset::Parameter parseValue(const ParameterSpec& spec, const std::string& text, 
     if (!number || !(value >= 0) || (value < kInfinity && value != std::floor(value)))
       throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not a count", text),
                   "write a whole number, or inf");
+    return value;
+  }
+  if (spec.type == Type::kShare) {
+    if (!number || !(value > 0) || !(value < 1))
+      throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not a share above 0 and below 1", text),
+                  "write for example 0.02");
     return value;
   }
   if (!number || !(value > 0))
@@ -169,7 +198,7 @@ Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_dia
   for (const ParameterSpec& p : kind.parameters) {
     const auto given = spec.values.find(p.name);
     const std::string text = given == spec.values.end() ? p.default_value : given->second;
-    if (p.type == Type::kLength && text == "auto") continue;
+    if (p.default_value == "auto" && text == "auto") continue;
     result[p.name] = parseValue(p, text, fmt::format("--layer {}:{}", kind.name, p.name));
   }
   // Automatic lengths, in the order in which they depend on one another.

@@ -216,7 +216,8 @@ void trimStore(const fs::path& folder, std::uint64_t limit) {
   std::uint64_t total = 0;
   std::error_code ec;
   for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
-    if (it->path().extension() != ".texels") continue;
+    const fs::path kind = it->path().extension();
+    if (kind != ".texels" && kind != ".layer") continue;
     std::error_code entry_ec;
     const std::uint64_t size = it->file_size(entry_ec);
     const fs::file_time_type used = it->last_write_time(entry_ec);

@@ -20,6 +20,22 @@ bool isObscurance(const asset::Layer& layer) {
   return layer.kind == "obscurance" || layer.kind == "spectral";
 }
 
+bool showsTransfer(View view) { return view == View::kRelit || view == View::kIndirect; }
+
+/// An irradiance is no share of anything, nor the other way round.
+bool fits(const asset::Layer& layer, View view) {
+  if (view == View::kTexels) return true;
+  return (view == View::kLightmap) == (layer.kind == "lightmap") && showsTransfer(view) == isTransfer(layer);
+}
+
+/// What to bake for a view that finds nothing.
+const char* remedyFor(View view) {
+  if (view == View::kLightmap) return "bake a lightmap";
+  if (showsTransfer(view)) return "bake lightpath or lightgroups";
+  if (view == View::kBentNormal) return "bake a layer with bent normals, such as ao:bent=true";
+  return "bake ao, obscurance or spectral";
+}
+
 /// The plane a view shows: of the named layer, or of the first that fits.
 const asset::Plane& choosePlane(const asset::Asset& asset, View view, const std::string& name,
                                 std::string_view plane_name) {
@@ -32,20 +48,15 @@ const asset::Plane& choosePlane(const asset::Asset& asset, View view, const std:
   }
   const asset::Plane* found = nullptr;
   const bool wants_obscurance = view == View::kObscurance || view == View::kLit;
-  const bool wants_lightmap = view == View::kLightmap, takes_any = view == View::kTexels;
   for (const asset::Layer& layer : asset.layers) {
     const asset::Plane* plane = findPlane(layer, plane_name);
-    // An irradiance is no share of anything, nor the other way round.
-    if (!plane || (!takes_any && wants_lightmap != (layer.kind == "lightmap"))) continue;
+    if (!plane || !fits(layer, view)) continue;
     if (!found) found = plane;
     if (!wants_obscurance || isObscurance(layer)) return *plane;
   }
   if (found) return *found;
   throw Error(ErrorCode::kNoSuchLayer, fmt::format("view {}", picture::name(view)),
-              fmt::format("no layer of this bake has a plane '{}'", plane_name),
-              wants_lightmap         ? "bake a lightmap"
-              : plane_name == "bent" ? "bake a layer with bent normals, such as ao:bent=true"
-                                     : "bake ao, obscurance or spectral");
+              fmt::format("no layer of this bake has a plane '{}'", plane_name), remedyFor(view));
 }
 
 void requireMatch(const scene::Scene& scene, const asset::AtlasTable& atlas) {
@@ -67,6 +78,10 @@ void requireMatch(const scene::Scene& scene, const asset::AtlasTable& atlas) {
 }
 
 }  // namespace
+
+bool isTransfer(const asset::Layer& layer) {
+  return layer.kind == "lightpath" || layer.kind == "lightgroups";
+}
 
 BakedValues::BakedValues(const scene::Scene& scene, const asset::Asset* asset, View view,
                          const std::string& layer)

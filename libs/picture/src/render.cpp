@@ -152,6 +152,10 @@ const char* name(View view) {
       return "lit";
     case View::kLightmap:
       return "lightmap";
+    case View::kRelit:
+      return "relit";
+    case View::kIndirect:
+      return "indirect";
     case View::kAlbedo:
       return "albedo";
     case View::kNormal:

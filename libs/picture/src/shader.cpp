@@ -3,6 +3,7 @@
 //   obscurance   L = k I_A W + emission                                              ([IKSZ03] eq. 4)
 //   lit          L = k ((I_A + beta sum_j E_j) W + E) + emission                     ([IKSZ03] eq. 5)
 //   lightmap     L = k E + emission, E the baked irradiance
+//   relit        L = k (E + I) + emission, I the relit indirect irradiance; indirect: L = k I
 // where E_j counts every light, turned or hidden or not (eq. 7), and k_A = k_D = k.
 // Beyond the paper: metals have no diffuse albedo and would be black, so for display they reflect all light
 // as if diffusely: k is base colour / pi everywhere, which is albedo / pi where nothing is metallic. That is
@@ -58,6 +59,10 @@ Vec3 Shader::lit(const ShadingPoint& point, const Receiver& receiver, Irradiance
   if (options_.view == View::kLightmap) {
     direct = place ? Irradiance(baked_.value(*place)) : ambient;
     ambient = Irradiance(0.0f);
+  } else if (options_.view == View::kRelit || options_.view == View::kIndirect) {
+    const bool lamps = options_.view == View::kRelit;
+    ambient += place ? Irradiance(baked_.value(*place)) : Irradiance(0.0f);
+    if (!lamps) return reflected(Albedo(base), ambient).rgb;
   } else if (place) {
     if (options_.view == View::kLit)
       ambient += options_.beta * unoccludedIrradiance(options_.lights, receiver.position);
@@ -99,6 +104,8 @@ Vec3 Shader::data(const ShadingPoint& point, const Receiver& receiver) const {
     case View::kObscurance:
     case View::kLit:
     case View::kLightmap:
+    case View::kRelit:
+    case View::kIndirect:
       break;
   }
   RELUME_CHECK(false);
@@ -110,6 +117,7 @@ void Shader::shade(std::span<const ShadingPoint> points, std::span<Vec3> colours
   RELUME_CHECK_EQ(points.size(), colours.size());
   RELUME_CHECK_LE(points.size(), kPacket);
   const scene::Scene& scene = tracer_.scene();
+  const bool lamps = options_.view == View::kLit || options_.view == View::kRelit;
   std::array<Receiver, kPacket> receivers;
   std::array<Irradiance, kPacket> direct;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -119,16 +127,15 @@ void Shader::shade(std::span<const ShadingPoint> points, std::span<Vec3> colours
     r.geometric = scene::geometricNormal(scene, p.where.instance, p.where.triangle);
     r.shading = scene::shadingNormal(scene, p.where);
     if (glm::dot(r.geometric, p.to_viewer) < 0) r.geometric = -r.geometric, r.shading = -r.shading;
-    r.shadow_origin =
-        options_.view == View::kLit ? shadowOrigin(scene, p.where, r.position, r.geometric) : r.position;
+    r.shadow_origin = lamps ? shadowOrigin(scene, p.where, r.position, r.geometric) : r.position;
     r.pixel = p.pixel;
     r.sample = p.sample;
   }
-  if (options_.view == View::kLit)
+  if (lamps)
     directIrradiance(tracer_, options_.lights, std::span(receivers).first(points.size()),
                      std::span(direct).first(points.size()));
-  const bool lights =
-      options_.view == View::kLit || options_.view == View::kObscurance || options_.view == View::kLightmap;
+  const bool lights = lamps || options_.view == View::kObscurance || options_.view == View::kLightmap ||
+                      options_.view == View::kIndirect;
   for (std::size_t i = 0; i < points.size(); ++i)
     colours[i] = lights ? lit(points[i], receivers[i], direct[i]) : data(points[i], receivers[i]);
 }

@@ -141,18 +141,18 @@ Light::Kind kindOf(const LightReader& reader) {
 void allowOnlyFieldsOf(Light::Kind kind, const LightReader& reader) {
   switch (kind) {
     case Light::Kind::kPoint:
-      return reader.allowOnly({"type", "name", "color", "intensity", "range", "position", "extras"});
+      return reader.allowOnly({"type", "name", "group", "color", "intensity", "range", "position", "extras"});
     case Light::Kind::kSpot:
-      return reader.allowOnly(
-          {"type", "name", "color", "intensity", "range", "position", "direction", "spot", "extras"});
+      return reader.allowOnly({"type", "name", "group", "color", "intensity", "range", "position",
+                               "direction", "spot", "extras"});
     case Light::Kind::kDirectional:
-      return reader.allowOnly(
-          {"type", "name", "color", "intensity", "direction", "position", "angularDiameter", "extras"});
+      return reader.allowOnly({"type", "name", "group", "color", "intensity", "direction", "position",
+                               "angularDiameter", "extras"});
     case Light::Kind::kArea:
-      return reader.find("vertices")
-                 ? reader.allowOnly({"type", "name", "color", "intensity", "vertices", "twoSided", "extras"})
-                 : reader.allowOnly({"type", "name", "color", "intensity", "position", "normal", "area",
-                                     "twoSided", "extras"});
+      return reader.find("vertices") ? reader.allowOnly({"type", "name", "group", "color", "intensity",
+                                                         "vertices", "twoSided", "extras"})
+                                     : reader.allowOnly({"type", "name", "group", "color", "intensity",
+                                                         "position", "normal", "area", "twoSided", "extras"});
   }
 }
 
@@ -217,6 +217,7 @@ Light readLight(const LightReader& reader) {
   light.kind = kindOf(reader);
   allowOnlyFieldsOf(light.kind, reader);
   light.name = reader.text("name");
+  light.group = reader.text("group");
   light.colour = reader.vector("color", 0, kMax).value_or(light.colour);
   light.intensity = reader.number("intensity", 0, kMax).value_or(light.intensity);
   if (const auto range = reader.number("range", 0, kMax)) light.range = positive(reader, "range", *range);

@@ -28,6 +28,7 @@ Mat3 rotationOf(const Mat4& m) {
 Light lightOf(const Value& json) {
   Light light;
   light.name = json["name"].text("");
+  light.group = json.group();
   const std::string type = json["type"].text("");
   if (type == "point")
     light.kind = Light::Kind::kPoint;
@@ -59,6 +60,8 @@ void importLights(Access& access, const std::vector<PlacedNode>& nodes, Scene& s
     if (!reference) continue;
     Light light = kinds[reference.index(kinds.size(), "light")];
     if (light.name.empty()) light.name = node.name;
+    if (std::string own = access.root()["nodes"].at(node.index).group(); !own.empty())
+      light.group = std::move(own);
     light.position = Point(node.world_from_local[3]);
     light.direction = -rotationOf(node.world_from_local)[2];
     scene.lights.push_back(std::move(light));

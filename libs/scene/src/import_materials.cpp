@@ -89,6 +89,7 @@ Material MaterialReader::read(const Value& json) {
   const auto unit = [](float v) { return std::clamp(v, 0.0f, 1.0f); };
   Material m;
   m.name = json["name"].text("");
+  m.group = json.group();
   const Value pbr = json["pbrMetallicRoughness"], old = json.extension("KHR_materials_pbrSpecularGlossiness");
   if (old) {
     // Diffuse light is what is baked, and there diffuse colour and base colour are one.

@@ -155,10 +155,8 @@ bool isMorphed(const Value& root, const Value& node) {
 
 /// extras.relume.dynamic or .static: what the author says, if anything.
 std::optional<bool> markedDynamic(const Value& node, Warnings& warnings) {
-  const Value extras = node["extras"];
-  if (!extras || !extras.json().is_object()) return std::nullopt;
-  const Value mark = extras["relume"];
-  if (!mark || !mark.json().is_object()) return std::nullopt;
+  const Value mark = node.notes();
+  if (!mark) return std::nullopt;
   std::optional<bool> dynamic;
   for (const char* key : {"static", "dynamic"}) {
     const Value flag = mark[key];

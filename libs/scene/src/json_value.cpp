@@ -59,6 +59,20 @@ bool Value::boolean(bool fallback) const {
   return json_->get<bool>();
 }
 
+Value Value::notes() const {
+  const Value extras = (*this)["extras"];
+  if (!extras || !extras.json().is_object()) return {file_, nullptr, path_};
+  const Value mark = extras["relume"];
+  return mark && mark.json().is_object() ? mark : Value(file_, nullptr, path_);
+}
+
+std::string Value::group() const {
+  const Value mark = notes();
+  if (!mark) return {};
+  const Value group = mark["group"];
+  return group && group.json().is_string() ? group.text("") : std::string();
+}
+
 double Value::number(double fallback) const {
   if (!json_) return fallback;
   if (!json_->is_number())

@@ -28,6 +28,10 @@ class Value {
   std::size_t size() const;
   /// `extensions.name` of this object.
   Value extension(const char* name) const;
+  /// `extras.relume` of this object, where both are objects: extras may be anything.
+  Value notes() const;
+  /// `extras.relume.group`, empty where there is no such text.
+  std::string group() const;
 
   const nlohmann::json& json() const { return *json_; }
   bool boolean(bool fallback) const;

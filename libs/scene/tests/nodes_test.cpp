@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gltf_builder.h"
+#include "relume/scene/light_groups.h"
 
 namespace relume::scene::gltf {
 namespace {
@@ -257,6 +258,24 @@ TEST(Lights, AreTurnedAndMovedButNotScaled) {
 
   b.doc["extensions"]["KHR_lights_punctual"]["lights"][1]["type"] = "tube";
   EXPECT_EQ(errorOf([&] { b.scene(); }), "invalid-value");
+}
+
+// A lamp's own word, then that of its kind; lamps without one stand for themselves.
+TEST(Lights, BelongToGroups) {
+  GltfBuilder b;
+  b.triangle();
+  b.doc["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"extras", {{"relume", {{"group", "hall"}}}}}},
+      {{"type", "point"}, {"intensity", 0}},
+      {{"type", "point"}, {"extras", {{"relume", 3}}}}};
+  const auto lamp = [](int kind) { return Json{{"KHR_lights_punctual", {{"light", kind}}}}; };
+  b.node({{"extensions", lamp(0)}, {"name", "a"}});
+  b.node({{"extensions", lamp(0)}, {"name", "b"}, {"extras", {{"relume", {{"group", "stage"}}}}}});
+  b.node({{"extensions", lamp(1)}, {"name", "dark"}});
+  b.node({{"extensions", lamp(2)}, {"name", "c"}, {"extras", {{"relume", {{"group", 5}}}}}});
+  Scene scene = b.scene();
+  scene.environment.radiance = Radiance(1.0f);
+  EXPECT_EQ(lightGroups(scene), (std::vector<std::string>{"hall", "stage", "c", kEnvironmentGroup}));
 }
 
 TEST(Cameras, ArePlaced) {

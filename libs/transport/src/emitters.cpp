@@ -11,6 +11,7 @@
 #include "light_tree.h"
 #include "relume/core/parallel.h"
 #include "relume/core/sampling.h"
+#include "relume/scene/light_groups.h"
 #include "relume/trace/tracer.h"
 #include "spherical_triangle.h"
 
@@ -86,8 +87,12 @@ EmitterBounds boundsOf(const Panel& panel) {
 }  // namespace
 
 struct Emitters::Impl {
-  Impl(const scene::Scene& the_scene, bool include_dynamic, EmissiveSurfaces surfaces)
-      : scene(the_scene), environment(the_scene.environment) {
+  Impl(const scene::Scene& the_scene, bool include_dynamic, EmissiveSurfaces surfaces,
+       const std::string& the_group)
+      : scene(the_scene),
+        group(the_group),
+        sky(shines(scene::kEnvironmentGroup) ? the_scene.environment : scene::Environment()),
+        environment(sky) {
     std::vector<EmitterBounds> bounds;
     addLights(bounds);
     first_triangle.assign(scene.instances.size(), scene::kNone);
@@ -95,10 +100,12 @@ struct Emitters::Impl {
     tree = std::make_unique<LightTree>(bounds);
   }
 
+  bool shines(const std::string& of_group) const { return group.empty() || group == of_group; }
+
   void addLights(std::vector<EmitterBounds>& bounds) {
     for (const Light& light : scene.lights) {
       const Vec3 strength = light.colour * light.intensity;
-      if (!(luminance(strength) > 0)) continue;
+      if (!(luminance(strength) > 0) || !shines(scene::groupOf(light))) continue;
       if (light.kind == Light::Kind::kDirectional) {
         suns.push_back({-light.direction, std::min(light.angular_radius, kPi / 2), strength});
         continue;
@@ -128,7 +135,8 @@ struct Emitters::Impl {
       const scene::Instance& instance = scene.instances[i];
       const scene::Mesh& mesh = scene.meshes[instance.mesh];
       const scene::Material& material = scene.materials[mesh.material];
-      if ((instance.dynamic && !include_dynamic) || material.unlit || !(luminance(material.emission) > 0))
+      if ((instance.dynamic && !include_dynamic) || material.unlit || !(luminance(material.emission) > 0) ||
+          !shines(scene::groupOf(material)))
         continue;
       first_triangle[i] = static_cast<std::uint32_t>(triangles.size());
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -156,7 +164,7 @@ struct Emitters::Impl {
   }
 
   // The choice of a distant emitter: a sun, or after the last of them the environment.
-  std::size_t distantCount() const { return suns.size() + (scene.environment.dark() ? 0 : 1); }
+  std::size_t distantCount() const { return suns.size() + (sky.dark() ? 0 : 1); }
   float estimate(std::size_t distant, Normal n) const {
     if (distant == suns.size()) return kPi * environment.meanLuminance();
     return suns[distant].estimate(n);
@@ -212,6 +220,8 @@ struct Emitters::Impl {
   }
 
   const scene::Scene& scene;
+  const std::string group;
+  const scene::Environment sky;
   EnvironmentSampler environment;
   std::vector<Sun> suns;
   // Local emitters: first the lamps, then the triangles; indices of the tree.
@@ -222,8 +232,9 @@ struct Emitters::Impl {
   std::unique_ptr<LightTree> tree;
 };
 
-Emitters::Emitters(const scene::Scene& scene, bool include_dynamic, EmissiveSurfaces surfaces)
-    : impl_(std::make_unique<Impl>(scene, include_dynamic, surfaces)) {}
+Emitters::Emitters(const scene::Scene& scene, bool include_dynamic, EmissiveSurfaces surfaces,
+                   const std::string& group)
+    : impl_(std::make_unique<Impl>(scene, include_dynamic, surfaces, group)) {}
 Emitters::~Emitters() = default;
 Emitters::Emitters(Emitters&&) noexcept = default;
 
@@ -237,7 +248,7 @@ bool Emitters::has(Reach reach) const {
 bool Emitters::emits(std::uint32_t instance) const { return impl_->first_triangle[instance] != scene::kNone; }
 bool Emitters::seenBesideSurfaces() const {
   const auto sized = [](const Sun& sun) { return !sun.delta(); };
-  return !impl_->shapes.empty() || !impl_->scene.environment.dark() ||
+  return !impl_->shapes.empty() || !impl_->sky.dark() ||
          std::any_of(impl_->suns.begin(), impl_->suns.end(), sized);
 }
 
@@ -266,7 +277,7 @@ LightSample Emitters::sample(Reach reach, Point p, Normal n, Vec2 u, float choic
   } else {
     s.direction = impl_->environment.sample(n, u);
     s.endless = true;
-    s.value = impl_->scene.environment.from(s.direction).rgb;
+    s.value = impl_->sky.from(s.direction).rgb;
     s.pdf = impl_->environment.pdf(n, s.direction);
   }
   s.pdf *= probability;
@@ -301,7 +312,7 @@ void Emitters::onRay(Point p, Normal n, Direction d, float from, float to,
     if (sun.delta() || !sun.covers(d)) continue;
     seen.push_back({sun.radiance(), impl_->distantProbability(i, n) * sun.pdf()});
   }
-  const scene::Environment& environment = impl_->scene.environment;
+  const scene::Environment& environment = impl_->sky;
   if (environment.dark()) return;
   seen.push_back(
       {environment.from(d), impl_->distantProbability(impl_->suns.size(), n) * impl_->environment.pdf(n, d)});

@@ -6,11 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lit_scene.h"
 #include "made_rooms.h"
 #include "relume/core/parallel.h"
+#include "relume/scene/light_groups.h"
 
 namespace relume::transport {
 namespace {
@@ -195,6 +197,38 @@ TEST(Lightmap, BitsDependNeitherOnThreadsNorOnTheSelection) {
     EXPECT_EQ(some.value[k], all.value[which[k]]);
     EXPECT_EQ(some.error[k], all.error[which[k]]);
   }
+}
+
+// Light is a sum over what shines: lamps, emissive surfaces and the environment, each alone.
+TEST(Lightmap, GroupsOfLightsSumToAllLight) {
+  scene::Scene scene = made::colouredRoom(true);
+  scene.instances.erase(scene.instances.begin());  // a wall less: the environment comes in
+  scene.environment.radiance = Radiance(0.1f);
+  scene::Material& wall = scene.materials[scene.meshes[scene.instances[0].mesh].material];
+  wall.name = "sign", wall.emission = Vec3(0, 2, 0);
+  const Point middle = scene.bounds().centre();
+  for (const char* group : {"left", "right", "left"}) {
+    Light& lamp = scene.lights.emplace_back();
+    lamp.group = group, lamp.colour = group[0] == 'l' ? Vec3(1, 0.5f, 0) : Vec3(0.2f, 0.6f, 1);
+    lamp.position = middle + Vec3(0.1f * static_cast<float>(scene.lights.size()), 0, 0);
+  }
+  const std::vector<std::string> groups = scene::lightGroups(scene);
+  ASSERT_TRUE(std::find(groups.begin(), groups.end(), "left") <
+              std::find(groups.begin(), groups.end(), "sign"));
+  const Lit lit(scene);
+  LightmapOptions options = plain(256);
+  const LightmapResult whole = lit.solve(options);
+  std::vector<glm::dvec3> sum(whole.value.size(), glm::dvec3(0));
+  for (const std::string& group : groups) {
+    options.group = group;
+    const LightmapResult part = lit.solve(options);
+    EXPECT_GT(glm::length(lit.mean(part)), 0) << group;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += glm::dvec3(part.value[i].rgb);
+  }
+  LightmapResult together = whole;
+  for (std::size_t i = 0; i < sum.size(); ++i) together.value[i] = Irradiance(Vec3(sum[i]));
+  // The choice among the lamps is the same in all blocks of texels, so their noise does not average out.
+  expectNear(lit.mean(together), lit.mean(whole), 0.02);
 }
 
 TEST(Lightmap, GlossyMaterialsKeepTheirEnergy) {

@@ -206,7 +206,7 @@ struct LightmapSolver::Impl {
       : tracer(the_tracer),
         texels(the_texels),
         options(the_options),
-        emitters(tracer.scene()),
+        emitters(tracer.scene(), false, EmissiveSurfaces::kIncluded, options.group),
         lookup(tracer.scene(), the_atlas, texels),
         groups(texels),
         first(options.target_error > 0.0f ? options.min_samples : options.max_samples),

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "relume/asset/asset.h"
 #include "relume/atlas/texels.h"
 #include "relume/bake/layer_spec.h"
 #include "relume/bake/quality.h"
@@ -19,11 +20,11 @@
 namespace relume::bake {
 
 struct ParameterSpec {
-  enum class Type : std::uint8_t { kLength, kChoice, kFlag, kCount };
+  enum class Type : std::uint8_t { kLength, kChoice, kFlag, kCount, kShare };
   std::string name;
   Type type = Type::kLength;
-  std::string
-      default_value;  ///< as a person would write it; "auto" for a length chosen from the scene's size
+  std::string default_value;  ///< as a person would write it; "auto" for a length chosen from the scene's
+                              ///< size, or for a count or share that follows the quality
   std::vector<std::string> choices;  ///< kChoice
   std::string help;                  ///< one line, with the unit
 };
@@ -33,6 +34,7 @@ struct LayerContext {
   const trace::Tracer& tracer;
   const atlas::Atlas& atlas;
   const atlas::Texels& texels;
+  const asset::AtlasTable& table;  ///< the texels as the file keeps them
   QualitySettings quality;
   std::uint64_t seed = 1;
 };
@@ -69,12 +71,27 @@ struct LayerJob {
   std::function<PointLayer(std::span<const float> rows)> finish;  ///< rows of all points
 };
 
+/// A layer that is no rows of texels, solved whole.
+struct WholeLayer {
+  asset::Layer layer;      ///< planes, tables, samples and error_estimate
+  std::uint64_t rays = 0;  ///< spent
+};
+struct WholeJob {
+  Digest key;  ///< of every setting that the layer depends on besides the scene's surfaces
+  std::function<WholeLayer(Progress&)> solve;
+  std::function<double(Progress&)> forecast;  ///< seconds that solve() will take, about, from a pilot
+  /// Of what the layer stands for, as 32-bit floats.
+  std::function<std::uint64_t(const asset::Layer&)> raw_bytes;
+};
+
 struct LayerKind {
   std::string name;
   std::string summary;
   std::string emitters, transport, receivers, codec;
   std::vector<ParameterSpec> parameters;
+  // One of the two.
   LayerJob (*prepare)(const LayerContext&, const Parameters&) = nullptr;
+  WholeJob (*prepare_whole)(const LayerContext&, const Parameters&) = nullptr;
   bool needs_light = false;       ///< of the scene's own lights and environment
   bool visibility_alone = false;  ///< what surfaces are made of does not matter, but to a correction
 

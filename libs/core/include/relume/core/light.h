@@ -16,6 +16,8 @@ struct Light {
   enum class Kind : std::uint8_t { kPoint, kSpot, kDirectional, kArea };
   Kind kind = Kind::kPoint;
   std::string name;
+  std::string
+      group;  ///< of lights that are dimmed and coloured together; empty: the light alone, by its name
   Vec3 colour{1.0f};
   float intensity = 1.0f;   ///< cd (point, spot), lux (directional), radiance W m^-2 sr^-1 (area)
   float range = kInfinity;  ///< metres; punctual lights fade to zero there

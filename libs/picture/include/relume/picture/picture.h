@@ -17,6 +17,8 @@ enum class View : std::uint8_t {
   kOcclusion,   ///< the layer's value alone, on white surfaces
   kLit,         ///< [IKSZ03] equation 5: ambient and all lights, with ray-traced shadows
   kLightmap,    ///< a lightmap's irradiance on the surfaces' colours, with what they emit
+  kRelit,       ///< a layer of transfer: relit indirect irradiance and all lights, with ray-traced shadows
+  kIndirect,    ///< the same without light that comes straight from lamps
   kAlbedo,      ///< diffuse albedo; metals are black
   kNormal,      ///< world-space shading normal n as (n + 1) / 2
   kBentNormal,  ///< the layer's bent normal, likewise
@@ -52,9 +54,13 @@ struct PictureOptions {
   Vec3 background{0.0f};  ///< linear
 };
 
+/// Whether a layer holds transfer of light; a view of it wants its plane "value" filled with the irradiance
+/// that the run time made of it.
+bool isTransfer(const asset::Layer& layer);
+
 /// Linear radiance (or the view's own colours), RGB. `asset` may be null for views that need no bake
 /// (kAlbedo, kNormal); otherwise the scene must be the baked file's own. Surfaces without a bake (dynamic
-/// instances) have W = 1 and, in kLit and kLightmap, no light but the ambient one. Metals reflect as if
+/// instances) have W = 1 and, where lamps are shown, no light but the ambient one. Metals reflect as if
 /// diffusely. Bits do not depend on the number of threads. Throws Error kNoSuchLayer when the view needs a
 /// layer or plane that is not there, kMismatch when scene and asset do not belong together, kUsage for a size
 /// or number of samples out of range.

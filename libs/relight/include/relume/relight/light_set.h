@@ -11,7 +11,7 @@ namespace relume::relight {
 
 /// A list of lights, or an object whose member `lights` is one (it may have an `environment` alone). Fields
 /// are those of KHR_lights_punctual: type (point, spot, directional; here also area), color, intensity,
-/// range, spot {innerConeAngle, outerConeAngle}, name; and, as there is no node: position (all but
+/// range, spot {innerConeAngle, outerConeAngle}, name, and group; and, as there is no node: position (all but
 /// directional), direction (spot, directional: the way the light travels), and for area lights either
 /// area (m^2), position and normal of a disk, or vertices, the corners of a flat polygon that shines to the
 /// side from which they go counter-clockwise; both may be twoSided; intensity of an area light is its

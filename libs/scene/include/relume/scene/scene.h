@@ -67,6 +67,7 @@ enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
 struct Material {
   std::string name;
+  std::string group;  ///< of lights, for what emits; empty: its name
   Vec4 base_colour{1.0f};
   TextureRef base_colour_texture;
   float metallic = 1.0f, roughness = 1.0f;

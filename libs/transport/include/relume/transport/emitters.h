@@ -17,6 +17,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "relume/core/light.h"
@@ -54,9 +55,10 @@ enum class EmissiveSurfaces : std::uint8_t {
 
 class Emitters {
  public:
-  /// Keeps a reference to `scene`, which must not change. `include_dynamic`: as the tracer was told.
+  /// Keeps a reference to `scene`, which must not change. `include_dynamic`: as the tracer was told. `group`:
+  /// nothing shines but what belongs to that one of scene::lightGroups; empty: everything.
   explicit Emitters(const scene::Scene& scene, bool include_dynamic = false,
-                    EmissiveSurfaces surfaces = EmissiveSurfaces::kIncluded);
+                    EmissiveSurfaces surfaces = EmissiveSurfaces::kIncluded, const std::string& group = {});
   ~Emitters();
   Emitters(Emitters&&) noexcept;
 

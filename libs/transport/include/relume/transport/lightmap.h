@@ -47,6 +47,7 @@ struct LightmapOptions {
   std::uint32_t cache_samples = 16;  ///< rays per texel that light is handed on along, a power of two
   std::uint64_t seed = 1;
   RadiosityOptions radiosity;  ///< for kRadiosity
+  std::string group;           ///< of scene::lightGroups that shines alone; empty: all; kGather and kPath
 };
 
 /// Per texel, in the order of Texels::points.
