@@ -12,8 +12,7 @@ namespace relume::relight {
 namespace {
 
 constexpr std::size_t kChannels = 3;
-// 256 planes: the sum of 256 products of 32767 and 128 stays below 2^31.
-constexpr std::size_t kGroupPairs = 128;
+constexpr std::size_t kLine = 64;  // bytes that memory gives at a time
 constexpr float kMostFactor = 32767.0f;
 constexpr int kHighDigit = 257;
 constexpr float kLeastSum =
@@ -24,16 +23,13 @@ constexpr std::size_t kLargeTile = 128;
 constexpr std::size_t kStripsAtOnce = 16;
 constexpr std::size_t kSharedAtOnce = 4096;
 
-// Values of target_ that are no row of y.
-constexpr std::uint32_t kShared = 1u << 31, kPadding = ~0u;
-
 constexpr std::size_t roundedUp(std::size_t n, std::size_t step) { return (n + step - 1) / step * step; }
 
 void checkGain(const codec::BlockMatrix& m) {
   double gain = 0;
   for (const float s : m.scale) gain += std::abs(s);
   gain *= (m.bits == 8 ? 127.0 : 32767.0) * std::max<std::uint32_t>(m.columns, 1);
-  if (!(gain <= kMostGain) || m.tile_row.size() >= kShared)
+  if (!(gain <= kMostGain))
     throw Error(ErrorCode::kCorruptAsset, "transfer", "its products leave the range of numbers",
                 "the file was damaged; bake it again");
 }
@@ -51,12 +47,12 @@ BlockProduct::BlockProduct(const codec::BlockMatrix& m, const ProductKernels& ke
     : kernels_(kernels), rows_(m.rows), channels_(m.channels), digits_(m.bits / 8) {
   checkGain(m);
   placeColumns(m);
-  placeRows(m);
   placeBlocks(m);
+  const std::vector<std::uint32_t> places = placeRows(m);
   if (m.bits == 8)
-    copySamples(m, m.planes8, m.weights8, weights8_);
+    copySamples(m, places, m.planes8, m.weights8, weights8_);
   else
-    copySamples(m, m.planes16, m.weights16, weights16_);
+    copySamples(m, places, m.planes16, m.weights16, weights16_);
 }
 
 void BlockProduct::placeColumns(const codec::BlockMatrix& m) {
@@ -71,90 +67,97 @@ void BlockProduct::placeColumns(const codec::BlockMatrix& m) {
   x_.assign(kChannels * x_stride_, 0.0f);
 }
 
-void BlockProduct::placeRows(const codec::BlockMatrix& m) {
-  std::vector<std::uint32_t> holders(m.rows);
-  for (const std::uint32_t row : m.tile_row) ++holders[row];
-  std::vector<std::uint32_t> next(m.rows);  // place of a shared row
-  shared_first_.push_back(0);
-  for (std::uint32_t row = 0; row < m.rows; ++row) {
-    if (holders[row] < 2) continue;
-    next[row] = shared_first_.back();
-    shared_row_.push_back(row);
-    shared_first_.push_back(shared_first_.back() + holders[row]);
-  }
-  shared_.resize(shared_first_.back());
-  for (std::size_t t = 0; t < m.tiles(); ++t) {
-    for (std::size_t i = m.tile_first[t]; i < m.tile_first[t + 1]; ++i) {
-      const std::uint32_t row = m.tile_row[i];
-      target_.push_back(holders[row] < 2 ? row : kShared + next[row]++);
-    }
-    target_.resize(roundedUp(target_.size(), kStripRows), kPadding);
-  }
-}
-
 void BlockProduct::placeBlocks(const codec::BlockMatrix& m) {
-  std::size_t rows = 0, samples = 0, factors = 0, steps = 0, components = 0, weights = 0, lit = 0;
+  std::size_t rows = 0, samples = 0, factors = 0, steps = 0, weights = 0, lit = 0;
   for (std::size_t t = 0; t < m.tiles(); ++t) {
-    const std::size_t strips = roundedUp(m.tile_first[t + 1] - m.tile_first[t], kStripRows) / kStripRows;
-    const std::size_t first_block = blocks_.size();
-    std::size_t planes = 0;
+    const std::size_t first_block = t * m.clusters();
     for (std::size_t c = 0; c < m.clusters(); ++c) {
-      const std::size_t b = t * m.clusters() + c;
-      const std::size_t count = m.component_first[b + 1] - m.component_first[b];
-      const std::size_t padded = roundedUp(count, kTogether);
-      blocks_.push_back({padded, components, {planes, planes + count * digits_}, weights});
-      scale_.insert(scale_.end(), m.scale.begin() + m.component_first[b],
-                    m.scale.begin() + m.component_first[b + 1]);
-      scale_.resize(components + padded, 0.0f);
-      components += padded, planes += count * digits_, weights += padded * clusters_[c].columns;
+      const Range components{m.component_first[first_block + c], m.component_first[first_block + c + 1]};
+      blocks_.push_back({components, weights});
+      weights += (components.end - components.begin) * clusters_[c].columns;
     }
-    const std::size_t pairs = roundedUp(planes, 2) / 2;
-    const std::size_t groups = roundedUp(pairs, kGroupPairs) / kGroupPairs;
-    tiles_.push_back({strips, pairs, rows, samples, factors, steps, first_block, lit, 0});
-    rows += strips * kStripRows, samples += strips * channels_ * pairs * 2 * kStripRows;
-    factors += kChannels * pairs * 2, steps += groups * kChannels, lit += m.clusters();
+    Tile tile{};
+    tile.strips = roundedUp(m.tile_first[t + 1] - m.tile_first[t], kStripRows) / kStripRows;
+    tile.components = {m.component_first[first_block], m.component_first[first_block + m.clusters()]};
+    tile.pairs = roundedUp((tile.components.end - tile.components.begin) * digits_, 2) / 2;
+    tile.rows = rows, tile.planes = samples, tile.factors = factors, tile.steps = steps,
+    tile.blocks = first_block, tile.lit = lit;
+    const std::size_t groups = roundedUp(tile.pairs, kGroupPairs) / kGroupPairs;
+    rows += tile.strips * kStripRows, samples += tile.strips * channels_ * tile.pairs * 2 * kStripRows;
+    factors += kChannels * tile.pairs * 2, steps += groups * kChannels, lit += m.clusters() + groups;
+    tiles_.push_back(tile);
   }
-  // A weight counts q |q| / max^2.
-  const float most = m.bits == 8 ? 127.0f : 32767.0f;
-  for (float& s : scale_) s /= most * most;
-  sum_.resize(kChannels * components);
+  target_.resize(rows);
   planes_.resize(std::max<std::size_t>(samples, 1));  // an address even where nothing is read
   factors_.resize(factors);
   steps_.resize(steps);
   lit_.resize(lit);
+  (digits_ == 1 ? weights8_.resize(weights) : weights16_.resize(weights));
+  // A weight counts q |q| / max^2.
+  const float most = digits_ == 1 ? 127.0f : 32767.0f;
+  for (const float s : m.scale) scale_.push_back(s / (most * most));
+  sum_.resize(kChannels * scale_.size());
+}
+
+// Rows that one tile alone has come first in it: they go straight to y. Returns the place of each of
+// m.tile_row in its tile.
+std::vector<std::uint32_t> BlockProduct::placeRows(const codec::BlockMatrix& m) {
+  std::vector<std::uint32_t> holders(m.rows), next(m.rows);
+  for (const std::uint32_t row : m.tile_row) ++holders[row];
+  shared_first_.push_back(0);
+  for (std::uint32_t row = 0; row < m.rows; ++row) {
+    if (holders[row] < 2) continue;
+    next[row] = shared_first_.back();  // the place of a shared row in shared_
+    shared_row_.push_back(row);
+    shared_first_.push_back(shared_first_.back() + holders[row]);
+  }
+  shared_.resize(shared_first_.back());
+  std::vector<std::uint32_t> places(m.tile_row.size());
+  for (std::size_t t = 0; t < m.tiles(); ++t) {
+    const Range in{m.tile_first[t], m.tile_first[t + 1]};
+    std::uint32_t place = 0;
+    for (const bool sole : {true, false}) {
+      for (std::size_t i = in.begin; i < in.end; ++i) {
+        const std::uint32_t row = m.tile_row[i];
+        if ((holders[row] < 2) != sole) continue;
+        places[i] = place++;
+        target_[tiles_[t].rows + places[i]] = sole ? row : next[row]++;
+      }
+      if (sole) tiles_[t].sole = place;
+    }
+    tiles_[t].held = place;
+  }
+  return places;
 }
 
 template <class Q>
-void BlockProduct::copySamples(const codec::BlockMatrix& m, const std::vector<Q>& planes,
-                               const std::vector<Q>& weights, std::vector<Q>& weights_out) {
+void BlockProduct::copySamples(const codec::BlockMatrix& m, std::span<const std::uint32_t> places,
+                               const std::vector<Q>& planes, const std::vector<Q>& weights,
+                               std::vector<Q>& weights_out) {
   sample_bytes_ = (planes.size() + weights.size()) * sizeof(Q);
-  weights_out.resize(
-      blocks_.empty() ? 0 : blocks_.back().weights + blocks_.back().components * clusters_.back().columns);
   const Q* plane = planes.data();
   const Q* weight = weights.data();
-  for (std::size_t t = 0; t < m.tiles(); ++t) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const std::size_t t = b / m.clusters(), c = b % m.clusters();
     const Tile& tile = tiles_[t];
-    const std::size_t rows = m.tile_first[t + 1] - m.tile_first[t];
-    for (std::size_t c = 0; c < m.clusters(); ++c) {
-      const std::size_t b = t * m.clusters() + c;
-      const std::size_t count = m.component_first[b + 1] - m.component_first[b];
-      const std::size_t columns = m.cluster_first[c + 1] - m.cluster_first[c];
-      const Block& block = blocks_[b];
-      for (std::size_t k = 0; k < count; ++k, weight += columns) {
-        Q* out = weights_out.data() + block.weights + k / kTogether * kTogether * clusters_[c].columns;
-        for (std::size_t j = 0; j < columns; ++j)
-          out[(j / kLanes * kTogether + k % kTogether) * kLanes + j % kLanes] = weight[j];
-        for (std::size_t channel = 0; channel < channels_; ++channel, plane += rows)
-          for (std::size_t digit = 0; digit < digits_; ++digit) {
-            const std::size_t p = block.planes.begin + k * digits_ + digit;
-            for (std::size_t i = 0; i < rows; ++i) {
-              const std::size_t strip = i / kStripRows;
-              const std::size_t at =
-                  ((strip * channels_ + channel) * tile.pairs + p / 2) * kStripRows + i % kStripRows;
-              planes_[tile.planes + 2 * at + p % 2] = digitOf(plane[i], digit, digits_);
-            }
+    const Range components = blocks_[b].components;
+    const std::size_t columns = m.cluster_first[c + 1] - m.cluster_first[c];
+    const auto place = places.subspan(m.tile_first[t], m.tile_first[t + 1] - m.tile_first[t]);
+    for (std::size_t k = components.begin; k < components.end; ++k, weight += columns) {
+      const std::size_t first = k - (k - components.begin) % kTogether;  // of those that are weighed with k
+      const std::size_t count = std::min(kTogether, components.end - first);
+      Q* out = weights_out.data() + blocks_[b].weights + (first - components.begin) * clusters_[c].columns;
+      for (std::size_t j = 0; j < columns; ++j)
+        out[(j / kLanes * count + k - first) * kLanes + j % kLanes] = weight[j];
+      for (std::size_t channel = 0; channel < channels_; ++channel, plane += place.size())
+        for (std::size_t digit = 0; digit < digits_; ++digit) {
+          const std::size_t p = (k - tile.components.begin) * digits_ + digit;
+          for (std::size_t i = 0; i < place.size(); ++i) {
+            const std::size_t strip = place[i] / kStripRows, row = place[i] % kStripRows;
+            const std::size_t at = ((strip * tile.pairs + p / 2) * channels_ + channel) * kStripRows + row;
+            planes_[tile.planes + 2 * at + p % 2] = digitOf(plane[i], digit, digits_);
           }
-      }
+        }
     }
   }
 }
@@ -176,107 +179,96 @@ void BlockProduct::gather(std::span<const Irradiance> x) {
 void BlockProduct::weigh(const Tile& tile, std::size_t c) {
   const Cluster& cluster = clusters_[c];
   const Block& block = blocks_[tile.blocks + c];
-  float* sums = sum_.data() + kChannels * block.first;
   if (cluster.dark) {
-    std::fill(sums, sums + kChannels * block.components, 0.0f);
+    std::fill(sum_.data() + kChannels * block.components.begin,
+              sum_.data() + kChannels * block.components.end, 0.0f);
     return;
   }
-  const float* x = x_.data() + cluster.first;
-  // Whoever weighs a tile adds its planes next, which are about three times the bytes.
+  // Whoever weighs a tile adds its planes next, which are some times the bytes.
+  const std::size_t done = block.components.begin - tile.components.begin;
   const std::int8_t* ahead =
-      planes_.data() + tile.planes + block.planes.begin * tile.strips * channels_ * kStripRows;
-  for (std::size_t k = 0; k < block.components; k += kTogether) {
-    float together[kChannels * kTogether];
-    const std::size_t at = block.weights + k * cluster.columns;
-    if (digits_ == 1)
-      kernels_.weigh8(weights8_.data() + at, x, x_stride_, cluster.columns, together, ahead);
-    else
-      kernels_.weigh16(weights16_.data() + at, x, x_stride_, cluster.columns, together, ahead);
-    ahead += cluster.columns * 64 / kLanes;
-    for (std::size_t i = 0; i < kTogether; ++i)
+      planes_.data() + tile.planes + done * digits_ * channels_ * tile.strips * kStripRows;
+  Weighing w{
+      x_.data() + cluster.first, x_stride_, cluster.columns, 0, reinterpret_cast<const char*>(ahead), {}};
+  std::size_t at = block.weights;
+  for (std::size_t k = block.components.begin; k < block.components.end; k += w.count) {
+    w.count = std::min(kTogether, block.components.end - k);
+    digits_ == 1 ? kernels_.weigh8(weights8_.data() + at, w) : kernels_.weigh16(weights16_.data() + at, w);
+    at += w.count * cluster.columns, w.ahead += cluster.columns / kLanes * kLine;
+    for (std::size_t i = 0; i < w.count; ++i)
       for (std::size_t channel = 0; channel < kChannels; ++channel)
-        sums[kChannels * (k + i) + channel] = scale_[block.first + k + i] * together[channel * kTogether + i];
+        sum_[kChannels * (k + i) + channel] = scale_[k + i] * w.sums[channel][i];
   }
 }
 
 void BlockProduct::chooseFactors(Tile& tile) {
-  std::int16_t* factors = factors_.data() + tile.factors;
-  std::fill(factors, factors + kChannels * tile.pairs * 2, std::int16_t{0});
-  // First the largest of each group and channel, then all in its units.
-  const std::size_t groups = roundedUp(tile.pairs, kGroupPairs) / kGroupPairs;
+  const std::size_t group_components = 2 * kGroupPairs / digits_;
   float* steps = steps_.data() + tile.steps;
-  std::fill(steps, steps + groups * kChannels, 0.0f);
-  const auto forEachPlane = [&](const auto& visit) {
-    for (std::size_t c = 0; c < clusters_.size(); ++c) {
-      if (clusters_[c].dark) continue;
-      const Block& block = blocks_[tile.blocks + c];
-      for (std::size_t p = block.planes.begin; p < block.planes.end; ++p) {
-        const std::size_t k = (p - block.planes.begin) / digits_;
-        const float digit = digits_ == 2 && (p - block.planes.begin) % 2 == 0 ? kHighDigit : 1.0f;
-        const float* s = sum_.data() + kChannels * (block.first + k);
-        for (std::size_t channel = 0; channel < kChannels; ++channel)
-          visit(p, channel, digit * s[channel], steps[p / (2 * kGroupPairs) * kChannels + channel]);
-      }
+  for (std::size_t first = tile.components.begin; first < tile.components.end;
+       first += group_components, steps += kChannels) {
+    const std::size_t last = std::min(first + group_components, tile.components.end);
+    float largest[kChannels] = {}, inverse[kChannels];
+    for (std::size_t k = first; k < last; ++k)
+      for (std::size_t c = 0; c < kChannels; ++c)
+        largest[c] = std::max(largest[c], std::abs(sum_[kChannels * k + c]));
+    const float digit = digits_ == 1 ? 1.0f : kHighDigit;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      const bool tells = largest[c] > kLeastSum;
+      steps[c] = tells ? digit * largest[c] / kMostFactor : 0.0f;
+      inverse[c] = tells ? 1 / steps[c] : 0.0f;
     }
-  };
-  forEachPlane([](std::size_t, std::size_t, float s, float& step) { step = std::max(step, std::abs(s)); });
-  for (std::size_t i = 0; i < groups * kChannels; ++i)
-    steps[i] = steps[i] > kLeastSum ? steps[i] / kMostFactor : 0.0f;
-  forEachPlane([&](std::size_t p, std::size_t channel, float s, float step) {
-    if (!(step > 0)) return;
-    const float f = std::clamp(s / step, -kMostFactor, kMostFactor);
-    factors[channel * tile.pairs * 2 + p] = static_cast<std::int16_t>(f + (f < 0 ? -0.5f : 0.5f));
-  });
+    const auto factorOf = [](float s) {
+      const float f = std::clamp(s, -kMostFactor, kMostFactor);
+      return static_cast<std::int16_t>(f + (f < 0 ? -0.5f : 0.5f));
+    };
+    std::int16_t* factors = factors_.data() + tile.factors;
+    for (std::size_t k = first; k < last; ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::size_t p = k - tile.components.begin;
+        const float s = inverse[c] * sum_[kChannels * k + c];
+        if (digits_ == 1) {
+          factors[(p / 2 * kChannels + c) * 2 + p % 2] = factorOf(s);
+        } else {
+          factors[(p * kChannels + c) * 2] = factorOf(digit * s);
+          factors[(p * kChannels + c) * 2 + 1] = factorOf(s);
+        }
+      }
+  }
 
   tile.lit_count = 0;
-  Range* lit = lit_.data() + tile.lit;
+  PairRange* lit = lit_.data() + tile.lit;
+  std::size_t taken = 0;  // pairs: two clusters may share one
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
-    const Range planes = blocks_[tile.blocks + c].planes;
-    if (clusters_[c].dark || planes.begin == planes.end) continue;
-    const Range pairs{planes.begin / 2, (planes.end + 1) / 2};
-    if (tile.lit_count > 0 && lit[tile.lit_count - 1].end >= pairs.begin)
-      lit[tile.lit_count - 1].end = pairs.end;
-    else
-      lit[tile.lit_count++] = pairs;
+    const Range components = blocks_[tile.blocks + c].components;
+    if (clusters_[c].dark || components.begin == components.end) continue;
+    const std::size_t end = ((components.end - tile.components.begin) * digits_ + 1) / 2;
+    taken = std::max(taken, (components.begin - tile.components.begin) * digits_ / 2);
+    while (taken < end) {
+      const std::size_t last = std::min(end, (taken / kGroupPairs + 1) * kGroupPairs);
+      const bool goes_on =
+          tile.lit_count > 0 && lit[tile.lit_count - 1].end == taken && taken % kGroupPairs != 0;
+      if (goes_on)
+        lit[tile.lit_count - 1].end = last;
+      else
+        lit[tile.lit_count++] = {taken, last};
+      taken = last;
+    }
   }
 }
 
 void BlockProduct::addStrips(const Tile& tile, std::size_t first, std::size_t last, std::span<Irradiance> y) {
-  const std::int16_t* factors = factors_.data() + tile.factors;
-  const float* steps = steps_.data() + tile.steps;
-  for (std::size_t strip = first; strip < last; ++strip) {
-    float values[kChannels][kStripRows] = {};
-    for (std::size_t channel = 0; channel < kChannels; ++channel) {
-      const std::size_t plane_channel = channels_ == 1 ? 0 : channel;
-      const std::int8_t* planes =
-          planes_.data() + tile.planes + (strip * channels_ + plane_channel) * tile.pairs * 2 * kStripRows;
-      std::int32_t sums[kStripRows] = {};
-      std::size_t group = 0;
-      const auto closeGroup = [&] {
-        const float step = steps[group * kChannels + channel];
-        for (std::size_t i = 0; i < kStripRows; ++i) {
-          values[channel][i] += step * static_cast<float>(sums[i]);
-          sums[i] = 0;
-        }
-      };
-      for (std::size_t r = 0; r < tile.lit_count; ++r) {
-        for (Range pairs = lit_[tile.lit + r]; pairs.begin < pairs.end;) {
-          if (group != pairs.begin / kGroupPairs) closeGroup();
-          group = pairs.begin / kGroupPairs;
-          const std::size_t end = std::min(pairs.end, (group + 1) * kGroupPairs);
-          kernels_.add_pairs(planes + pairs.begin * 2 * kStripRows,
-                             factors + (channel * tile.pairs + pairs.begin) * 2, end - pairs.begin, sums);
-          pairs.begin = end;
-        }
-      }
-      if (tile.lit_count > 0) closeGroup();
-    }
-    const std::uint32_t* target = target_.data() + tile.rows + strip * kStripRows;
-    for (std::size_t i = 0; i < kStripRows; ++i) {
-      if (target[i] == kPadding) break;
-      (target[i] < kShared ? y[target[i]] : shared_[target[i] - kShared]) =
-          Irradiance({values[0][i], values[1][i], values[2][i]});
-    }
+  const std::size_t strip_bytes = tile.pairs * channels_ * 2 * kStripRows;
+  StripPlanes strip{planes_.data() + tile.planes + first * strip_bytes, factors_.data() + tile.factors,
+                    steps_.data() + tile.steps, lit_.data() + tile.lit, tile.lit_count};
+  const std::uint32_t* target = target_.data() + tile.rows + first * kStripRows;
+  for (std::size_t s = first; s < last; ++s, strip.planes += strip_bytes, target += kStripRows) {
+    alignas(64) float rows[kStripRows][4];
+    (channels_ == 1 ? kernels_.add_shared_strip : kernels_.add_strip)(strip, rows);
+    const std::size_t row = s * kStripRows, count = std::min(kStripRows, tile.held - row);
+    const std::size_t sole = std::clamp(tile.sole, row, row + count) - row;
+    for (std::size_t i = 0; i < sole; ++i) y[target[i]] = Irradiance({rows[i][0], rows[i][1], rows[i][2]});
+    for (std::size_t i = sole; i < count; ++i)
+      shared_[target[i]] = Irradiance({rows[i][0], rows[i][1], rows[i][2]});
   }
 }
 

@@ -40,38 +40,36 @@ class BlockProduct {
   void multiply(std::span<const Irradiance> x, std::span<Irradiance> y);
 
  private:
-  struct Range {
-    std::size_t begin, end;
-  };
+  using Range = PairRange;
   struct Cluster {
     std::size_t first, columns;  ///< in x_, whole lanes
     bool dark;
   };
   /// Of one tile and one cluster.
   struct Block {
-    std::size_t components;  ///< whole kTogether
-    std::size_t first;       ///< in sum_
-    Range planes;            ///< of 8 bits, numbered within the tile
-    std::size_t weights;     ///< first sample in weights8_ or weights16_
+    Range components;     ///< in sum_
+    std::size_t weights;  ///< first sample in weights8_ or weights16_
   };
   struct Tile {
-    std::size_t strips;   ///< of kStripRows rows
-    std::size_t pairs;    ///< of planes
-    std::size_t rows;     ///< first in target_
-    std::size_t planes;   ///< first sample in planes_
-    std::size_t factors;  ///< first in factors_; shape: [3][pairs][2]
-    std::size_t steps;    ///< first in steps_; shape: [groups of pairs][3]
-    std::size_t blocks;   ///< first in blocks_, one for each cluster
-    std::size_t lit;      ///< first in lit_
-    std::size_t lit_count;
+    std::size_t rows;            ///< first in target_
+    std::size_t held;            ///< rows
+    std::size_t sole;            ///< of them those that no other tile has; they come first
+    std::size_t strips;          ///< of kStripRows rows
+    Range components;            ///< in sum_
+    std::size_t pairs;           ///< of planes
+    std::size_t planes;          ///< first sample in planes_
+    std::size_t factors;         ///< first in factors_; shape: [pairs][3][2]
+    std::size_t steps;           ///< first in steps_; shape: [groups of pairs][3]
+    std::size_t blocks;          ///< first in blocks_, one for each cluster
+    std::size_t lit, lit_count;  ///< ranges in lit_
   };
 
-  template <class Q>
-  void copySamples(const codec::BlockMatrix& m, const std::vector<Q>& planes, const std::vector<Q>& weights,
-                   std::vector<Q>& weights_out);
   void placeColumns(const codec::BlockMatrix& m);
-  void placeRows(const codec::BlockMatrix& m);
+  std::vector<std::uint32_t> placeRows(const codec::BlockMatrix& m);
   void placeBlocks(const codec::BlockMatrix& m);
+  template <class Q>
+  void copySamples(const codec::BlockMatrix& m, std::span<const std::uint32_t> places,
+                   const std::vector<Q>& planes, const std::vector<Q>& weights, std::vector<Q>& weights_out);
 
   void gather(std::span<const Irradiance> x);
   void weigh(const Tile& tile, std::size_t cluster);
@@ -88,14 +86,14 @@ class BlockProduct {
   std::vector<Block> blocks_;
   std::vector<std::int8_t> weights8_;
   std::vector<std::int16_t> weights16_;
-  std::vector<float> scale_;           ///< by component in sum_
+  std::vector<float> scale_;           ///< by component
   std::vector<float> sum_;             ///< s; shape: [components][3]
-  std::vector<std::int8_t> planes_;    ///< of each tile: [strips][channels][pairs][kStripRows][2]
+  std::vector<std::int8_t> planes_;    ///< of each tile: [strips][pairs][channels][kStripRows][2]
   std::vector<std::int16_t> factors_;  ///< s in units of its step
   std::vector<float> steps_;
-  std::vector<Range> lit_;  ///< pairs of clusters that are not dark
-  /// Of each row of each tile, padded to whole strips: the row of y where no other tile has it, else kShared
-  /// + a place in shared_, or kPadding.
+  std::vector<PairRange> lit_;  ///< pairs of clusters that are not dark, cut where groups end
+  /// Of each row of each tile, padded to whole strips: the row of y where no other tile has it, else a place
+  /// in shared_.
   std::vector<std::uint32_t> target_;
   std::vector<Irradiance> shared_;
   std::vector<std::uint32_t> shared_row_, shared_first_;  ///< rows of several tiles, and their places
