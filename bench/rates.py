@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Rays per second beside bare Embree, and relighting: runs the benchmark programs, fills docs/performance.md.
 
-    bench/rates.py [BUILD_DIR] [rays|gather|relighting ...]        (default: build/bench, made by scripts/build bench; all three)
+    bench/rates.py [BUILD_DIR] [rays|gather|relighting|transfer ...]        (default: build/bench, made by scripts/build bench; all four)
 """
 import json
 import pathlib
@@ -44,14 +44,29 @@ def gather(build):
 
 
 def relighting(build):
-    found = run(build / "libs/relight/relume_relight_bench", ".")
+    found = run(build / "libs/relight/relume_relight_bench", "-relight.transfer")
     return table(("benchmark", "milliseconds"), [(name.split("/real_time")[0], f"{row['real_time'] * {'ns': 1e-6, 'us': 1e-3, 'ms': 1}[row['time_unit']]:.2f}")
                                                  for name, row in found.items()])
 
 
+def transfer(build):
+    found = run(build / "libs/relight/relume_relight_bench", "relight.transfer")
+    milliseconds = lambda row: f"{row['real_time'] * {'ns': 1e-6, 'us': 1e-3, 'ms': 1}[row['time_unit']]:.3f}"
+    rates, times = [], []
+    for name, row in found.items():
+        parts = dict(part.split(":") for part in name.split("/") if ":" in part)
+        if "ratio" in row:
+            rates.append((parts["bits"], parts["threads"].replace("0", "all"), f"{row['megabytes']:.0f}", f"{row['memory_bytes_per_second'] * 1e-9:.1f}",
+                          f"{row['bytes_per_second'] * 1e-9:.1f}", f"{row['ratio']:.2f}"))
+        else:
+            times.append((name.removeprefix("relight.transfer.").replace(".", " ").replace("_", " ").replace("/", ", ").replace(":", " "), milliseconds(row)))
+    return (table(("bits", "threads", "planes and weights, MB", "memory, GB/s", "product, GB/s", "ratio"), rates) + "\n" +
+            table(("what", "milliseconds"), times))
+
+
 def main():
     build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/bench")
-    tables = {"rays": rays, "gather": gather, "relighting": relighting}
+    tables = {"rays": rays, "gather": gather, "relighting": relighting, "transfer": transfer}
     for name in sys.argv[2:] or tables:
         fill(PAGE, name, f"Measured on {machine()}.\n\n{tables[name](build)}")
     print(f"wrote {PAGE}")

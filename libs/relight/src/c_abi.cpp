@@ -7,18 +7,39 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "relume/asset/asset.h"
 #include "relume/core/error.h"
+#include "relume/relight/group_relighter.h"
 #include "relume/relight/obscurance.h"
 #include "relume/relight/relume.h"
+#include "relume/relight/transfer_relighter.h"
 
 struct relume_relighter {
-  relume_relighter(relume::asset::AtlasTable table, relume::relight::ObscuranceRelighter obscurance_relighter)
-      : atlas(std::move(table)), obscurance(std::move(obscurance_relighter)) {}
+  using Obscurance = relume::relight::ObscuranceRelighter;
+  using Transfer = relume::relight::TransferRelighter;
+  using Groups = relume::relight::GroupRelighter;
+
+  relume_relighter(const relume::asset::Asset& asset, const relume::asset::Layer& layer)
+      : relighter(relighterOf(asset, layer)), atlas(asset.atlas) {
+    if (const auto* groups = std::get_if<Groups>(&relighter))
+      gains.assign(groups->groupCount(), relume::Vec3(1));
+  }
+
+  // In the order of relume_layer_kind.
+  using Relighter = std::variant<Obscurance, Transfer, Groups>;
+  static Relighter relighterOf(const relume::asset::Asset& asset, const relume::asset::Layer& layer) {
+    if (layer.kind == "lightgroups") return Groups(asset, layer);
+    if (layer.findTable("shape")) return Transfer(asset, layer);
+    return Obscurance(asset, layer);
+  }
+
+  Relighter relighter;
   relume::asset::AtlasTable atlas;
-  relume::relight::ObscuranceRelighter obscurance;
   relume::LightSet lights;
+  std::vector<relume::Vec3> gains;  ///< by group
   relume::relight::VisibilitySource visibility;
 };
 
@@ -52,6 +73,8 @@ relume_status statusOf(ErrorCode code) {
     case ErrorCode::kMismatch:
     case ErrorCode::kNoSuchLayer:
       return RELUME_NO_SUCH_LAYER;
+    case ErrorCode::kInvalidValue:
+      return RELUME_BAD_ARGUMENT;
     case ErrorCode::kOutOfMemory:
       return RELUME_OUT_OF_MEMORY;
     default:
@@ -111,8 +134,35 @@ const char* convert(const relume_light& in, Light& out) {
     if (!(in.area > 0 && in.area <= std::numeric_limits<float>::max()))
       return "an area light needs an area above 0";
     out.area = in.area;
+    out.two_sided = in.two_sided != 0;
   }
   return nullptr;
+}
+
+const float* floatsOf(std::span<const relume::Vec3> values) {
+  static_assert(sizeof(relume::Vec3) == 3 * sizeof(float));
+  return reinterpret_cast<const float*>(values.data());
+}
+
+// Where visibility is asked.
+std::span<const relume::Point> pointsOf(const relume_relighter* r) {
+  if (!r || std::get_if<relume_relighter::Groups>(&r->relighter)) return {};
+  const auto* transfer = std::get_if<relume_relighter::Transfer>(&r->relighter);
+  return transfer ? transfer->entryPoints() : r->atlas.position;
+}
+std::span<const relume::Normal> normalsOf(const relume_relighter* r) {
+  if (!r || std::get_if<relume_relighter::Groups>(&r->relighter)) return {};
+  const auto* transfer = std::get_if<relume_relighter::Transfer>(&r->relighter);
+  return transfer ? transfer->entryNormals() : r->atlas.normal;
+}
+
+std::span<const relume::Irradiance> evaluate(relume_relighter& r, const relume_settings* settings) {
+  if (auto* groups = std::get_if<relume_relighter::Groups>(&r.relighter)) return groups->evaluate(r.gains);
+  if (auto* transfer = std::get_if<relume_relighter::Transfer>(&r.relighter))
+    return transfer->evaluate(r.lights, r.visibility);
+  const relume::relight::ObscuranceOptions options{relume::Irradiance(vec(settings->ambient)),
+                                                   settings->beta};
+  return std::get<relume_relighter::Obscurance>(r.relighter).evaluate(r.lights, options, r.visibility);
 }
 
 }  // namespace
@@ -122,9 +172,9 @@ extern "C" {
 relume_status relume_open(const void* glb, size_t size, const char* layer, relume_relighter** out) {
   if (!glb || !out) return fail(RELUME_BAD_ARGUMENT, "relume_open: a pointer is null");
   return guarded([&] {
-    relume::asset::Asset asset = relume::asset::decode({static_cast<const std::byte*>(glb), size}, "bake");
-    relume::relight::ObscuranceRelighter obscurance(asset, asset.layer(layer ? layer : ""));
-    *out = std::make_unique<relume_relighter>(std::move(asset.atlas), std::move(obscurance)).release();
+    const relume::asset::Asset asset =
+        relume::asset::decode({static_cast<const std::byte*>(glb), size}, "bake");
+    *out = std::make_unique<relume_relighter>(asset, asset.layer(layer ? layer : "")).release();
     return RELUME_OK;
   });
 }
@@ -147,12 +197,21 @@ const uint32_t* relume_texels(const relume_relighter* relighter) {
 }
 
 const float* relume_positions(const relume_relighter* relighter) {
-  static_assert(sizeof(relume::Point) == 3 * sizeof(float));
-  return relighter ? reinterpret_cast<const float*>(relighter->atlas.position.data()) : nullptr;
+  return relighter ? floatsOf(relighter->atlas.position) : nullptr;
 }
 
 const float* relume_normals(const relume_relighter* relighter) {
-  return relighter ? reinterpret_cast<const float*>(relighter->atlas.normal.data()) : nullptr;
+  return relighter ? floatsOf(relighter->atlas.normal) : nullptr;
+}
+
+relume_layer_kind relume_kind(const relume_relighter* relighter) {
+  return relighter ? static_cast<relume_layer_kind>(relighter->relighter.index()) : RELUME_OBSCURANCE;
+}
+
+size_t relume_point_count(const relume_relighter* relighter) { return pointsOf(relighter).size(); }
+const float* relume_points(const relume_relighter* relighter) { return floatsOf(pointsOf(relighter)); }
+const float* relume_point_normals(const relume_relighter* relighter) {
+  return floatsOf(normalsOf(relighter));
 }
 
 relume_status relume_set_lights(relume_relighter* relighter, const relume_light* lights, size_t count) {
@@ -181,19 +240,45 @@ relume_status relume_set_visibility(relume_relighter* relighter, relume_visibili
   });
 }
 
+relume_status relume_forget_visibility(relume_relighter* relighter) {
+  if (!relighter) return fail(RELUME_BAD_ARGUMENT, "relume_forget_visibility: a pointer is null");
+  if (auto* transfer = std::get_if<relume_relighter::Transfer>(&relighter->relighter))
+    transfer->forgetVisibility();
+  return RELUME_OK;
+}
+
+size_t relume_group_count(const relume_relighter* relighter) {
+  return relighter ? relighter->gains.size() : 0;
+}
+
+const char* relume_group_name(const relume_relighter* relighter, size_t group) {
+  if (group >= relume_group_count(relighter)) return nullptr;
+  return std::get<relume_relighter::Groups>(relighter->relighter).groupNames()[group].c_str();
+}
+
+relume_status relume_set_gains(relume_relighter* relighter, const float* gains, size_t count) {
+  if (!relighter || (!gains && count > 0))
+    return fail(RELUME_BAD_ARGUMENT, "relume_set_gains: a pointer is null");
+  if (count != relighter->gains.size())
+    return fail(RELUME_BAD_ARGUMENT, "relume_set_gains: the number of gains is not that of the groups");
+  for (size_t i = 0; i < 3 * count; ++i)
+    if (!atLeastZero(gains[i]))
+      return fail(RELUME_BAD_ARGUMENT, "relume_set_gains: a gain is negative or not finite");
+  for (size_t g = 0; g < count; ++g) relighter->gains[g] = vec(gains + 3 * g);
+  return RELUME_OK;
+}
+
 relume_status relume_evaluate(relume_relighter* relighter, const relume_settings* settings, float* irradiance,
                               size_t capacity) {
-  if (!relighter || !settings || !irradiance)
-    return fail(RELUME_BAD_ARGUMENT, "relume_evaluate: a pointer is null");
+  if (!relighter || !irradiance) return fail(RELUME_BAD_ARGUMENT, "relume_evaluate: a pointer is null");
+  if (!settings && relume_kind(relighter) == RELUME_OBSCURANCE)
+    return fail(RELUME_BAD_ARGUMENT, "relume_evaluate: obscurance needs settings");
   if (capacity / 3 < relighter->atlas.texel.size())
     return fail(RELUME_BAD_ARGUMENT, "relume_evaluate: the buffer is too small");
-  if (!finite(vec(settings->ambient)) || !(settings->beta >= 0 && settings->beta <= 1))
+  if (settings && (!finite(vec(settings->ambient)) || !(settings->beta >= 0 && settings->beta <= 1)))
     return fail(RELUME_BAD_ARGUMENT, "relume_evaluate: ambient is not finite or beta not in [0, 1]");
   return guarded([&] {
-    const relume::relight::ObscuranceOptions options{relume::Irradiance(vec(settings->ambient)),
-                                                     settings->beta};
-    for (const relume::Irradiance& e :
-         relighter->obscurance.evaluate(relighter->lights, options, relighter->visibility))
+    for (const relume::Irradiance& e : evaluate(*relighter, settings))
       for (int c = 0; c < 3; ++c) *irradiance++ = e.rgb[c];
     return RELUME_OK;
   });

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "c_abi_check.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
 
@@ -213,19 +212,6 @@ TEST(Obscurance, RefusesLayersThatAreNotObscurance) {
   EXPECT_EQ(code(), ErrorCode::kMismatch);
   bake.layers[0].planes.clear();
   EXPECT_EQ(code(), ErrorCode::kMismatch);
-}
-
-TEST(CAbi, WorksFromC) {
-  asset::Asset bake = bakeOf({{Point(0, 0, 0), {0, 1, 0}, {0.5f}}});
-  bake.atlas.texel = {0, 1};
-  bake.atlas.position = {{0, 0, 0}, {1, 0, 0}};
-  bake.atlas.normal = {{0, 1, 0}, {0, 1, 0}};
-  bake.atlas.albedo.assign(2, Vec3(0.5f));
-  bake.atlas.valid.assign(2, 1);
-  bake.atlas.chart.assign(2, 0);
-  bake.layers[0].planes[0].values = {0.5f, 0.25f};
-  const auto glb = asset::encodeGlb(bake);
-  EXPECT_EQ(checkCAbi(glb.data(), glb.size()), 0) << "line of c_abi_check.c";
 }
 
 }  // namespace

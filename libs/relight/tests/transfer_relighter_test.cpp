@@ -247,5 +247,47 @@ TEST(TransferRelighter, LayersWithoutTransferAreAMismatch) {
   }
 }
 
+// Numbers of tables changed at random, as a file with sound checksums might have them: a clear error, or
+// light that is finite.
+TEST(TransferRelighter, ChangedTablesAreRefusedOrHarmless) {
+  const asset::Asset sound = madeBake({.rows = 60, .columns = 20, .rank = 3});
+  const LightSet lights = someLights(3);
+  std::mt19937 random(17);
+  int refused = 0;
+  constexpr int kRuns = 3000;
+  for (int run = 0; run < kRuns; ++run) {
+    asset::Asset bake = sound;
+    auto& tables = bake.layers[0].tables;
+    std::visit(
+        [&](auto& values) {
+          using T = typename std::remove_reference_t<decltype(values)>::value_type;
+          if (run % 10 == 0) values.resize(random() % (2 * values.size() + 1));
+          for (unsigned k = random() % 3 + 1; k > 0 && !values.empty(); --k) {
+            T& value = values[random() % values.size()];
+            if constexpr (std::is_floating_point_v<T>)
+              value = std::ldexp(static_cast<float>(random()), static_cast<int>(random() % 200) - 130);
+            else
+              value = static_cast<T>(random() % 2 ? random() : value + random() % 3 - 1);
+          }
+        },
+        tables[random() % tables.size()].values);
+    try {
+      TransferRelighter relighter(bake, bake.layers[0]);
+      for (const Irradiance& e : relighter.evaluate(lights)) ASSERT_TRUE(isFinite(e.rgb)) << "run " << run;
+    } catch (const Error& e) {
+      ASSERT_TRUE(e.code() == ErrorCode::kCorruptAsset || e.code() == ErrorCode::kInvalidValue) << e.what();
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, kRuns / 4);
+  EXPECT_LT(refused, kRuns);
+}
+
+TEST(TransferRelighter, EveryTruncatedFileIsRefused) {
+  const auto file = asset::encodeGlb(madeBake({.rows = 20, .columns = 8, .rank = 2}));
+  for (std::size_t size = 0; size < file.size(); ++size)
+    ASSERT_THROW(asset::decode(std::span(file).first(size), "cut"), Error) << size;
+}
+
 }  // namespace
 }  // namespace relume::relight
