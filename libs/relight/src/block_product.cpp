@@ -12,7 +12,6 @@ namespace relume::relight {
 namespace {
 
 constexpr std::size_t kChannels = 3;
-constexpr std::size_t kLine = 64;  // bytes that memory gives at a time
 constexpr float kMostFactor = 32767.0f;
 constexpr int kHighDigit = 257;
 constexpr float kLeastSum =
@@ -88,7 +87,7 @@ void BlockProduct::placeBlocks(const codec::BlockMatrix& m) {
     tiles_.push_back(tile);
   }
   target_.resize(rows);
-  planes_.resize(std::max<std::size_t>(samples, 1));  // an address even where nothing is read
+  planes_.resize(samples);
   factors_.resize(factors);
   steps_.resize(steps);
   lit_.resize(lit);
@@ -184,17 +183,12 @@ void BlockProduct::weigh(const Tile& tile, std::size_t c) {
               sum_.data() + kChannels * block.components.end, 0.0f);
     return;
   }
-  // Whoever weighs a tile adds its planes next, which are some times the bytes.
-  const std::size_t done = block.components.begin - tile.components.begin;
-  const std::int8_t* ahead =
-      planes_.data() + tile.planes + done * digits_ * channels_ * tile.strips * kStripRows;
-  Weighing w{
-      x_.data() + cluster.first, x_stride_, cluster.columns, 0, reinterpret_cast<const char*>(ahead), {}};
+  Weighing w{x_.data() + cluster.first, x_stride_, cluster.columns, 0, {}};
   std::size_t at = block.weights;
   for (std::size_t k = block.components.begin; k < block.components.end; k += w.count) {
     w.count = std::min(kTogether, block.components.end - k);
     digits_ == 1 ? kernels_.weigh8(weights8_.data() + at, w) : kernels_.weigh16(weights16_.data() + at, w);
-    at += w.count * cluster.columns, w.ahead += cluster.columns / kLanes * kLine;
+    at += w.count * cluster.columns;
     for (std::size_t i = 0; i < w.count; ++i)
       for (std::size_t channel = 0; channel < kChannels; ++channel)
         sum_[kChannels * (k + i) + channel] = scale_[k + i] * w.sums[channel][i];

@@ -78,9 +78,7 @@ RELUME_AVX2 void weighSome(const Q* weights, Weighing& w) {
     for (__m256& lane : channel) lane = _mm256_setzero_ps();
   const __m256 sign = _mm256_set1_ps(-0.0f);
   const float *red = w.x, *green = red + w.stride, *blue = green + w.stride;
-  const char* ahead = w.ahead;
-  for (std::size_t j = 0; j < w.columns; j += kLanes, ahead += 64) {
-    _mm_prefetch(ahead, _MM_HINT_T1);
+  for (std::size_t j = 0; j < w.columns; j += kLanes) {
     const __m256 x[kChannels] = {_mm256_loadu_ps(red + j), _mm256_loadu_ps(green + j),
                                  _mm256_loadu_ps(blue + j)};
     for (std::size_t k = 0; k < kCount; ++k, weights += kLanes) {

@@ -17,7 +17,6 @@ struct Weighing {
   std::size_t stride;   ///< floats
   std::size_t columns;  ///< of x that are taken, a multiple of kLanes
   std::size_t count;    ///< of components, 1 to kTogether
-  const char* ahead;    ///< memory that is read next, fetched meanwhile; never null, but it need not exist
   float sums[3][kTogether];
 };
 
