@@ -20,6 +20,34 @@ double quantile(std::vector<float>& values, double share) {
   return values[static_cast<std::size_t>(n)];
 }
 
+// All lights at once, by products of matrices. returns [lights][rows][channels]
+template <class Q>
+std::vector<float> productsOf(const BlockMatrix& m, const std::vector<Q>& planes,
+                              const std::vector<Q>& weights, std::span<const float> x, std::size_t lights) {
+  using Samples = Eigen::Map<const Eigen::Matrix<Q, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+  const Eigen::Map<const Matrix> all(x.data(), signedSize(lights), signedSize(m.columns));
+  const ColumnClusters clusters{m.cluster_first, m.cluster_column};
+  const BlockOffsets at = offsets(m);
+  const Transfer shape{
+      .rows = m.rows, .columns = m.columns, .channels = m.channels, .tiles = {m.tile_first, m.tile_row, {}}};
+  std::vector<Matrix> of_tile(m.tiles());
+  parallelFor(m.tiles(), 1, [&](std::size_t t, std::size_t) {
+    of_tile[t] = Matrix::Zero(signedSize(m.channels * shape.tiles.rows(t)), signedSize(lights));
+    for (std::size_t c = 0; c < m.clusters(); ++c) {
+      const std::size_t b = t * m.clusters() + c;
+      const Eigen::Index rank = m.component_first[b + 1] - m.component_first[b];
+      if (rank == 0) continue;
+      const Samples plane(planes.data() + at.plane[b], rank, of_tile[t].rows());
+      const Samples weight(weights.data() + at.weight[b], rank, signedSize(clusters.columns(c)));
+      const Eigen::Map<const Eigen::VectorXf> scale(m.scale.data() + m.component_first[b], rank);
+      const Matrix values = weight.unaryExpr([](Q q) { return weightOf(q); });
+      const Matrix lit = scale.asDiagonal() * (values * columnsOf(all, clusters, c).transpose());
+      of_tile[t].noalias() += plane.template cast<float>().transpose() * lit;
+    }
+  });
+  return addTiles(shape, of_tile);
+}
+
 }  // namespace
 
 ColumnClusters clustersFromLabels(std::span<const std::uint32_t> labels, std::size_t clusters) {
@@ -81,14 +109,9 @@ EncodeError measureProducts(std::span<const float> given, std::span<const float>
 
 EncodeError measure(const BlockMatrix& m, std::span<const float> x, std::span<const float> truth) {
   const std::size_t lights = m.columns == 0 ? 0 : x.size() / m.columns;
-  const std::size_t size = std::size_t{m.rows} * m.channels;
-  RELUME_CHECK_EQ(truth.size(), lights * size);
-  std::vector<float> given(truth.size());
-  parallelFor(lights, 1, [&](std::size_t l, std::size_t) {
-    std::vector<float> in;
-    for (std::size_t j = 0; j < m.columns; ++j) in.insert(in.end(), m.channels, x[l * m.columns + j]);
-    multiply(m, in, std::span(given).subspan(l * size, size));
-  });
+  RELUME_CHECK_EQ(truth.size(), lights * m.rows * m.channels);
+  const std::vector<float> given = m.bits == 8 ? productsOf(m, m.planes8, m.weights8, x, lights)
+                                               : productsOf(m, m.planes16, m.weights16, x, lights);
   return measureProducts(given, truth, m.rows, m.channels);
 }
 

@@ -77,6 +77,21 @@ TEST_F(TwoRoomTiles, ReportTellsTheTruth) {
   EXPECT_LT(e.report.rounding_share, 0.1);
 }
 
+TEST_F(TwoRoomTiles, MeasureMultipliesAsThePlainProductDoes) {
+  const Transfer t = transfer();
+  const ColumnClusters clusters = test::clustersOf(*rooms_, 3);
+  for (const std::uint32_t bits : {8u, 16u}) {
+    const EncodedTiles e = encodeTiles(t, clusters, *lights_, {.error = 0, .rank = 3, .bits = bits});
+    std::vector<float> y(std::size_t{24} * t.rows * 3);
+    for (std::size_t l = 0; l < 24; ++l) {
+      std::vector<float> in;
+      for (std::size_t j = 0; j < 192; ++j) in.insert(in.end(), 3, lights_->held_out[l * 192 + j]);
+      multiply(e.matrix, in, std::span(y).subspan(l * t.rows * 3, std::size_t{3} * t.rows));
+    }
+    EXPECT_LT(measure(e.matrix, lights_->held_out, y).worst, 1e-5);
+  }
+}
+
 TEST_F(TwoRoomTiles, ProductsAreThoseOfTheMatrix) {
   const Transfer t = transfer();
   std::vector<float> unit(192);
