@@ -41,8 +41,14 @@ TileCoder::TileCoder(const Transfer& transfer, const ColumnClusters& clusters, c
   training_ = lightMatrix(lights.training, transfer.columns);
   held_out_ = lightMatrix(lights.held_out, transfer.columns);
   RELUME_CHECK_LT(Index{0}, training_.rows());
-  // Of equal power, more or less: how bright a light is does not say how often it shines.
-  for (Index l = 0; l < training_.rows(); ++l) training_.row(l) /= training_.row(l).sum();
+  // Of equal power, more or less: how bright a light is does not say how often it shines. One that reaches no
+  // column, shut in somewhere, says nothing.
+  Index lit = 0;
+  for (Index l = 0; l < training_.rows(); ++l) {
+    const float sum = training_.row(l).sum();
+    if (sum > 0) training_.row(lit++) = (training_.row(l) / sum).eval();
+  }
+  training_.conservativeResize(lit, Eigen::NoChange);
 }
 
 TileCode TileCoder::code(std::size_t tile, double error) const {
@@ -56,7 +62,7 @@ TileCode TileCoder::code(std::size_t tile, double error) const {
   out.truth = rows * held_out_.transpose();
 
   out.response = product.colwise().squaredNorm().cast<double>();
-  const double mean = out.response.mean();
+  const double mean = out.response.size() > 0 ? out.response.mean() : 0;
   out.light_weight = Eigen::VectorXd::Zero(training_.rows());
   if (mean > 0)
     out.light_weight =

@@ -255,6 +255,17 @@ TEST_F(TwoRoomTiles, StopsWhenCancelled) {
   }
 }
 
+TEST_F(TwoRoomTiles, LightsThatReachNothingCountForNothing) {
+  const TileOptions options{.error = 0.05};
+  Lights lights = *lights_;
+  lights.training.insert(lights.training.begin() + 192, 192, 0.0f);
+  lights.held_out.insert(lights.held_out.begin(), 192, 0.0f);
+  const EncodedTiles some = encodeTiles(transfer(), test::clustersOf(*rooms_, 2), lights, options);
+  const EncodedTiles plain = encodeTiles(transfer(), test::clustersOf(*rooms_, 2), *lights_, options);
+  EXPECT_TRUE(some.report.met);
+  EXPECT_EQ(some.matrix.planes8, plain.matrix.planes8);
+}
+
 TEST(EncodeTiles, DarkMatrixTakesNoComponents) {
   const std::vector<float> zeros(20 * 8);
   RowTiles tiles{{0, 10, 20}, {}, std::vector<float>(20, 1.0f)};

@@ -47,7 +47,7 @@ struct Transfer {
 };
 
 /// Vectors that the matrix will be multiplied with, such as irradiance of random lights on the entries. The
-/// same for all channels; none zero.
+/// same for all channels, finite and not negative. Those that are zero everywhere count for nothing.
 struct Lights {
   std::vector<float> training;  ///< shape: [n][columns]; the encoder weighs errors by them
   std::vector<float> held_out;  ///< shape: [m][columns]; errors are measured with them
