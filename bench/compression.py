@@ -39,7 +39,7 @@ def best(rows, method, target, **having):
 
 
 def cell(row):
-    return f"{row['bytes']:.0f}" if row else "more than raw"
+    return f"{row['bytes']:.0f}" if row else "not measured"
 
 
 def summary(results):
@@ -55,14 +55,13 @@ def summary(results):
             lines.append((name, f"{100 * target:g} %", f"{raw:.0f}", cell(svd), cell(pca), cell(overall), cell(tiles), ratio))
             if tiles:
                 detail.append((name, f"{100 * target:g} %", f"{tiles['bytes']:.0f}", f"{tiles['planes']:.0f}", f"{tiles['weights']:.0f}", f"{tiles['overlap']:.2f}",
-                               tiles["clusters"], f"{100 * tiles['mean']:.2f}", f"{100 * tiles['median']:.2f}", f"{100 * tiles['worst']:.1f}", f"{100 * tiles['row_p95']:.1f}",
-                               f"{tiles['seconds']:.1f}"))
+                               tiles["clusters"], f"{100 * tiles['mean']:.2f}", f"{100 * tiles['median']:.2f}", f"{100 * tiles['worst']:.1f}", f"{100 * tiles['row_p95']:.1f}"))
             of = {r["clusters"]: r for r in rows if r["method"] == "tiles" and r["target"] == target}
             clusters.append((name, f"{100 * target:g} %", *(f"{of[c]['bytes']:.0f}" if c in of else "" for c in (1, 2, 3, 4))))
     return (f"Measured on {machine()}.\n\n" +
             table(("scene", "error", "raw", "one global SVD", "clustered PCA", "tiles, that error alone", "tiles, dark rows too", "clustered PCA / tiles at that error"), lines) +
             "\nWhat the last column but one is made of:\n\n" +
-            table(("scene", "error asked", "bytes", "planes", "weights", "overlap", "clusters", "mean %", "median %", "worst %", "rows p95 %", "seconds"), detail) +
+            table(("scene", "error asked", "bytes", "planes", "weights", "overlap", "clusters", "mean %", "median %", "worst %", "rows p95 %"), detail) +
             "\nTiles by the number of clusters of entries:\n\n" + table(("scene", "error", "1", "2", "3", "4"), clusters))
 
 
