@@ -9,6 +9,7 @@
 
 #include "relume/core/memory.h"
 #include "report_charts.h"
+#include "report_parts.h"
 
 namespace relume::app {
 namespace {
@@ -130,27 +131,6 @@ std::string pageFigures(const LayerPictures& pictures) {
 }
 
 }  // namespace
-
-std::string shortNumber(double value) {
-  if (value == 0) return "0";
-  if (std::abs(value) < 0.001) return fmt::format("{:.1e}", value);
-  return std::abs(value) >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
-std::string percent(double share) {
-  if (share > 0 && share < 0.001) return "< 0.1 %";
-  return fmt::format("{:.1f} %", share * 100);
-}
-
-std::string figure(const ReportPicture& picture, const std::string& caption, const char* kind) {
-  const bool sharp = std::string_view(kind) == "texels";
-  return fmt::format(
-      "<figure{}><a href=\"{}\"><img src=\"{}\" width={} height={} "
-      "alt=\"{}\"{}></a><figcaption>{}</figcaption></figure>\n",
-      std::string_view(kind) == "wide" ? " class=wide" : "", escapeHtml(picture.file),
-      escapeHtml(picture.file), picture.width, picture.height, escapeHtml(caption),
-      sharp ? " class=texels" : "", escapeHtml(caption));
-}
 
 std::string layerSection(const bake::BakeResult& result, std::size_t layer, const LayerPictures& pictures) {
   const LayerReport& report = result.report.layers[layer];

@@ -10,7 +10,7 @@
 #include "relume/core/memory.h"
 #include "report_charts.h"
 #include "report_layer.h"
-#include "report_style.h"
+#include "report_parts.h"
 
 namespace relume::app {
 namespace {
@@ -19,10 +19,6 @@ using bake::BakeResult;
 
 constexpr double kManyInvalid = 0.2;  // share of an object's texels from which it is worth a look
 constexpr double kUneven = 2;         // ratio of high to low texel density from which squares look unequal
-
-std::string card(const std::string& value, const std::string& label, const char* colour = "") {
-  return fmt::format("<div class=card><b class=\"{}\">{}</b><span>{}</span></div>\n", colour, value, label);
-}
 
 double targetOf(const bake::Report& report) {
   const auto found = report.settings.find("target_error");
@@ -114,11 +110,9 @@ std::vector<std::string> findings(const BakeResult& result) {
 std::string notesList(const BakeResult& result) {
   const std::vector<std::string> notes = findings(result);
   std::string html = "<ul class=notes>\n";
-  for (const std::string& note : notes) html += "<li class=watch><span>" + note + "</span></li>\n";
-  for (const Warning& warning : result.warnings)
-    html += "<li class=bad><span>" + escapeHtml(warning.text()) + "</span></li>\n";
-  if (notes.empty() && result.warnings.empty())
-    html += "<li class=good><span>Nothing needs a second look.</span></li>\n";
+  for (const std::string& text : notes) html += note(text, "watch");
+  for (const Warning& warning : result.warnings) html += note(escapeHtml(warning.text()), "bad");
+  if (notes.empty() && result.warnings.empty()) html += note("Nothing needs a second look.", "good");
   return html + "</ul>\n";
 }
 
@@ -227,14 +221,11 @@ std::string settingsSection(const ReportFacts& facts, const BakeResult& result) 
 
 std::string reportPage(const ReportFacts& facts, const BakeResult& result,
                        const std::vector<ReportPicture>& scene, const std::vector<LayerPictures>& layers) {
-  const std::string title = escapeHtml(std::filesystem::path(facts.output).filename().string());
-  std::string html = fmt::format(
-      "<!doctype html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
-      "content=\"width=device-width, initial-scale=1\"><title>{0} – bake "
-      "report</title><style>{1}</style></head>\n<body>\n"
-      "<h1>{0}</h1>\n<div class=soft>baked from {2} by {3}; {4}</div>\n",
-      title, kReportStyle, escapeHtml(std::filesystem::path(facts.input).filename().string()),
-      escapeHtml(result.asset.generator), formatSize(result.glb.size()));
+  const std::string name = std::filesystem::path(facts.output).filename().string();
+  std::string html = pageHead(name + " – bake report");
+  html += fmt::format("<h1>{}</h1>\n<div class=soft>baked from {} by {}; {}</div>\n", escapeHtml(name),
+                      escapeHtml(std::filesystem::path(facts.input).filename().string()),
+                      escapeHtml(result.asset.generator), formatSize(result.glb.size()));
   html += "<nav>";
   for (const bake::LayerReport& layer : result.report.layers)
     html += fmt::format("<a href=\"#layer-{0}\">{0}</a>", escapeHtml(layer.name));

@@ -7,13 +7,9 @@
 
 #include "relume/bake/bake.h"
 #include "relume/core/progress.h"
+#include "report_parts.h"
 
 namespace relume::app {
-
-struct ReportPicture {
-  std::string file, caption;
-  int width = 0, height = 0;
-};
 
 /// The baked scene by rays: lit where it has lamps, each layer's ambient light, texels, charts, validity.
 std::vector<ReportPicture> drawScene(const std::filesystem::path& folder, const std::filesystem::path& baked,

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "lightmap_truth.h"
 #include "relume/core/error.h"
 #include "relume/core/frame.h"
 #include "relume/core/quantity.h"
@@ -24,15 +26,46 @@ struct Place {
   double baked = 0;
 };
 
-const asset::Layer& layerOf(const asset::Asset& asset, const std::string& name) {
-  if (name.empty())
-    for (const asset::Layer& layer : asset.layers)
-      if (layer.kind == "lightmap") return layer;
-  if (const asset::Layer* layer = name.empty() ? nullptr : &asset.layer(name);
-      layer && layer->kind == "lightmap")
-    return *layer;
-  throw Error(ErrorCode::kNoSuchLayer, name.empty() ? "the bake" : "layer " + name,
-              name.empty() ? "has no lightmap" : "is no lightmap", "bake --layer lightmap");
+/// What is known of one place: luminance of the irradiance.
+struct Sample {
+  double baked = 0, first = 0, second = 0;  ///< two independent truths
+  double truth() const { return 0.5 * (first + second); }
+  double noise() const { return 0.5 * std::abs(first - second); }
+};
+
+Agreement agreementOf(std::span<const Sample> samples) {
+  Agreement a;
+  a.points = samples.size();
+  const auto n = static_cast<double>(samples.size());
+  double noise2 = 0, product_sum = 0;
+  const auto product = [](const Sample& s) { return (s.baked - s.first) * (s.baked - s.second); };
+  for (const Sample& s : samples) {
+    a.mean_baked += s.baked / n, a.mean_true += s.truth() / n;
+    noise2 += s.noise() * s.noise() / n, product_sum += product(s) / n;
+  }
+  if (!(a.mean_true > 0)) return a;
+  double spread = 0, difference2 = 0;
+  for (const Sample& s : samples) {
+    spread += (product(s) - product_sum) * (product(s) - product_sum) / (n * n);
+    const double d = s.baked - s.truth() - (a.mean_baked - a.mean_true);
+    difference2 += d * d / (n * n);
+  }
+  a.bias = a.mean_baked / a.mean_true - 1;
+  a.truth_noise = std::sqrt(noise2) / a.mean_true;
+  a.bias_error = std::sqrt(difference2) / a.mean_true;
+  a.rmse = std::sqrt(std::max(product_sum, 0.0)) / a.mean_true;
+  a.rmse_error = std::sqrt(spread) / (2 * std::max(a.rmse, 1e-9) * a.mean_true * a.mean_true);
+  return a;
+}
+
+std::vector<ObjectAgreement> byObject(const scene::Scene& scene, std::span<const Place> places,
+                                      std::span<const Sample> samples) {
+  std::map<std::uint32_t, std::vector<Sample>> of_instance;
+  for (std::size_t i = 0; i < places.size(); ++i) of_instance[places[i].hit.instance].push_back(samples[i]);
+  std::vector<ObjectAgreement> objects;
+  for (const auto& [instance, own] : of_instance)
+    objects.push_back({agreementOf(own), scene.instances[instance].name});
+  return objects;
 }
 
 /// Places with equal shares of the baked area.
@@ -71,25 +104,6 @@ class SurfaceSampler {
   std::vector<Triangle> triangles_;
   std::vector<double> until_;  // area up to and with each
 };
-
-transport::ReferenceOptions truthOf(const asset::Layer& layer, const VerifyOptions& options) {
-  const auto word = [&](const char* key) {
-    const auto found = layer.parameters.find(key);
-    return found == layer.parameters.end() ? std::string() : std::get<std::string>(found->second);
-  };
-  transport::ReferenceOptions truth;
-  truth.samples = std::max(options.samples / 2, 16u);
-  truth.materials =
-      word("materials") == "lambert" ? transport::Materials::kLambert : transport::Materials::kFull;
-  truth.part = word("part") == "direct"     ? transport::Part::kDirect
-               : word("part") == "indirect" ? transport::Part::kIndirect
-                                            : transport::Part::kTotal;
-  if (const auto found = layer.parameters.find("bounces"); found != layer.parameters.end())
-    if (const double bounces = std::get<double>(found->second); bounces < 1e6)
-      truth.max_bounces = static_cast<int>(bounces);
-  truth.seed = options.seed;
-  return truth;
-}
 
 /// Another surface lies in the same plane: what is true there depends on which of the two is asked.
 bool coincides(const trace::Tracer& tracer, const scene::Hit& own, float diagonal) {
@@ -148,7 +162,7 @@ std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::Bake
 
 Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset,
                             const VerifyOptions& options, Progress& progress) {
-  const asset::Layer& layer = layerOf(asset, options.layer);
+  const asset::Layer& layer = lightmapOf(asset, options.layer);
   const picture::BakedValues baked(scene, &asset, picture::View::kLightmap, layer.name);
   Verification result;
   result.layer = layer.name, result.error_estimate = layer.error_estimate;
@@ -162,52 +176,33 @@ Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset
     receivers.push_back({scene::worldPosition(scene, place.hit),
                          scene::geometricNormal(scene, place.hit.instance, place.hit.triangle),
                          scene::shadingNormal(scene, place.hit)});
-  transport::ReferenceOptions truth = truthOf(layer, options);
+  transport::ReferenceOptions truth = truthOf(layer, std::max(options.samples / 2, 16u), options.seed);
   const auto first = reference.irradiance(receivers, truth, progress);
-  truth.seed += 0x5851f42d4c957f2du;
+  truth.seed = independentSeed(options.seed);
   const auto second = reference.irradiance(receivers, truth, progress);
   result.paths = first.samples + second.samples;
 
-  const auto n = static_cast<double>(places.size());
-  std::vector<double> truths(places.size()), noises(places.size()), products(places.size());
-  double noise2 = 0, product_sum = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto t1 = static_cast<double>(luminance(first.value[i].rgb)),
-               t2 = static_cast<double>(luminance(second.value[i].rgb));
-    truths[i] = 0.5 * (t1 + t2), noises[i] = 0.5 * std::abs(t1 - t2);
-    products[i] = (places[i].baked - t1) * (places[i].baked - t2);
-    result.mean_baked += places[i].baked / n, result.mean_true += truths[i] / n;
-    noise2 += noises[i] * noises[i] / n, product_sum += products[i] / n;
-  }
+  std::vector<Sample> samples(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    samples[i] = {places[i].baked, static_cast<double>(luminance(first.value[i].rgb)),
+                  static_cast<double>(luminance(second.value[i].rgb))};
+  static_cast<Agreement&>(result) = agreementOf(samples);
   if (!(result.mean_true > 0))
     throw Error(ErrorCode::kEmptyScene, scene.name, "no light reaches the baked surfaces",
                 "give the --lights that it was baked with");
-  double spread = 0, difference2 = 0;
-  const double difference = result.mean_baked - result.mean_true;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    spread += (products[i] - product_sum) * (products[i] - product_sum) / (n * n);
-    const double d = places[i].baked - truths[i] - difference;
-    difference2 += d * d / (n * n);
-  }
-  result.bias = result.mean_baked / result.mean_true - 1;
-  result.truth_noise = std::sqrt(noise2) / result.mean_true;
-  result.bias_error = std::sqrt(difference2) / result.mean_true;
-  result.rmse = std::sqrt(std::max(product_sum, 0.0)) / result.mean_true;
-  result.rmse_error =
-      std::sqrt(spread) / (2 * std::max(result.rmse, 1e-9) * result.mean_true * result.mean_true);
+  result.objects = byObject(scene, places, samples);
+  for (const Sample& s : samples) result.differences.push_back((s.baked - s.truth()) / result.mean_true);
 
   std::vector<std::size_t> order;
-  const double typical = std::sqrt(noise2);
+  const double typical = result.truth_noise * result.mean_true;
+  const auto off = [&](std::size_t i) { return std::abs(samples[i].baked - samples[i].truth()); };
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (std::abs(places[i].baked - truths[i]) > kBeyondNoise * std::max(noises[i], typical))
-      order.push_back(i);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(places[a].baked - truths[a]) > std::abs(places[b].baked - truths[b]);
-  });
+    if (off(i) > kBeyondNoise * std::max(samples[i].noise(), typical)) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return off(a) > off(b); });
   if (order.size() > kWorst) order.resize(kWorst);
   for (const std::size_t i : order)
     result.worst.push_back({scene.instances[places[i].hit.instance].name, receivers[i].position,
-                            places[i].baked, truths[i], noises[i]});
+                            samples[i].baked, samples[i].truth(), samples[i].noise()});
   return result;
 }
 

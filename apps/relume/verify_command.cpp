@@ -2,53 +2,30 @@
 // relume verify: a bake against path-traced truth.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
 
 #include "command.h"
 #include "files.h"
+#include "lightmap_comparison.h"
 #include "reference_picture.h"
 #include "relume/core/error.h"
 #include "relume/core/file.h"
+#include "report_folder.h"
 #include "verification.h"
+#include "verify_report.h"
 
 namespace relume::app {
 namespace {
 
 struct VerifyCommandOptions {
-  std::string asset, lights, json;
+  std::string asset, lights, json, report, size = "480x270";
   VerifyOptions verify;
+  ViewOptions views;
 };
 
-std::string toJson(const Verification& v) {
-  nlohmann::ordered_json out{{"layer", v.layer},
-                             {"points", v.points},
-                             {"skipped", v.skipped},
-                             {"paths", v.paths},
-                             {"mean_baked", v.mean_baked},
-                             {"mean_true", v.mean_true},
-                             {"relative_bias", v.bias},
-                             {"relative_bias_error", v.bias_error},
-                             {"relative_rmse", v.rmse},
-                             {"relative_rmse_error", v.rmse_error},
-                             {"truth_noise", v.truth_noise},
-                             {"error_estimate", v.error_estimate}};
-  out["worst"] = nlohmann::ordered_json::array();
-  for (const Verification::Place& p : v.worst)
-    out["worst"].push_back({{"object", p.object},
-                            {"position", {p.position.x, p.position.y, p.position.z}},
-                            {"baked", p.baked},
-                            {"true", p.truth},
-                            {"true_error", p.truth_error}});
-  return out.dump(2) + "\n";
-}
-
-void verify(const VerifyCommandOptions& options, Progress& progress) {
-  const auto opened = open(options.asset, {.normal_maps = true});
-  if (!opened->asset)
-    throw Error(ErrorCode::kNoSuchLayer, options.asset, "carries no bake", "bake --layer lightmap first");
-  if (!options.json.empty()) requireWritable(options.json);
-  lightScene(opened->scene, options.lights, "");
-  const Verification v = verifyLightmap(opened->scene, *opened->asset, options.verify, progress);
+void print(const Verification& v) {
   fmt::print("{}: {} places, {} paths; shares of the mean true irradiance, {:.4g}\n", v.layer, v.points,
              v.paths, v.mean_true);
   fmt::print("bias  {:+.2f} % +- {:.2f} %\n", v.bias * 100, v.bias_error * 100);
@@ -58,7 +35,29 @@ void verify(const VerifyCommandOptions& options, Progress& progress) {
   for (const Verification::Place& p : v.worst)
     fmt::print("  {:>8.4g} where {:.4g} +- {:.2g} is true: {} at {:.3f}, {:.3f}, {:.3f}\n", p.baked, p.truth,
                p.truth_error, p.object, p.position.x, p.position.y, p.position.z);
-  if (!options.json.empty()) writeFileAtomically(options.json, toJson(v));
+}
+
+void verify(const VerifyCommandOptions& options, const std::string& typed, Progress& progress) {
+  const auto opened = open(options.asset, {.normal_maps = true});
+  if (!opened->asset)
+    throw Error(ErrorCode::kNoSuchLayer, options.asset, "carries no bake", "bake --layer lightmap first");
+  if (!options.json.empty()) requireWritable(options.json);
+  ViewOptions views = options.views;
+  views.size = parseExtent(options.size, "--size");
+  std::optional<ReportFolder> report;
+  if (!options.report.empty()) report.emplace(options.report);
+  lightScene(opened->scene, options.lights, "");
+  const Verification v = verifyLightmap(opened->scene, *opened->asset, options.verify, progress);
+  print(v);
+  std::fflush(stdout);  // pictures take longer
+  if (!options.json.empty()) writeFileAtomically(options.json, toJson(v).dump(2) + "\n");
+  if (!report) return;
+  const VerifyFacts facts{options.asset, options.lights, opened->asset->generator, typed};
+  writeVerifyReport(report->draft(), facts,
+                    {compareLightmap(opened->scene, *opened->asset, v, options.verify, views, progress)},
+                    progress);
+  report->publish();
+  fmt::print("report: {}\n", (std::filesystem::path(options.report) / "report.html").string());
 }
 
 }  // namespace
@@ -67,7 +66,7 @@ void addVerify(CLI::App& app, Program& program) {
   auto options = std::make_shared<VerifyCommandOptions>();
   CLI::App* command = app.add_subcommand("verify",
                                          "Compares a baked lightmap with path-traced truth.\nExample: relume "
-                                         "verify room.baked.glb --points 4000");
+                                         "verify room.baked.glb -o verified");
   command->add_option("ASSET", options->asset, "baked .glb with a lightmap")->required();
   command->add_option("--lights", options->lights, "the light file that it was baked with");
   command->add_option("--layer", options->verify.layer, "without it, the first lightmap");
@@ -79,7 +78,18 @@ void addVerify(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("--seed", options->verify.seed, "of the random numbers")->capture_default_str();
   command->add_option("--json", options->json, "write what was measured to a file");
-  onCommand(command, program, options, verify);
+  command->add_option("-o,--output", options->report,
+                      "folder for a report: report.html with pictures beside path-traced ones, report.json");
+  command->add_option("--size", options->size, "width x height of the report's pictures")
+      ->capture_default_str();
+  command->add_option("--picture-spp", options->views.samples, "paths per pixel of the report's pictures")
+      ->check(CLI::Range(8u, 1u << 20))
+      ->capture_default_str();
+  command->callback([&program, options] {
+    program.run = [options, typed = program.command_line](Progress& progress) {
+      verify(*options, typed, progress);
+    };
+  });
 }
 
 }  // namespace relume::app

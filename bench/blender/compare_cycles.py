@@ -21,12 +21,10 @@ import os
 import pathlib
 import platform
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import time
-import zlib
 
 import numpy as np
 
@@ -34,6 +32,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "bench"))
 import atlas_masks  # noqa: E402
 import baked_glb  # noqa: E402
+import png  # noqa: E402
 from plot import line_plot  # noqa: E402
 
 COUNTED = ("texels", "bvh", "seams", "ao", "ao finish")
@@ -157,14 +156,7 @@ def error_picture(difference, mask, path):
     x = np.clip(np.where(mask & (np.abs(difference) > 0.02), difference, 0) / 0.1, -1, 1)
     grey = np.where(mask, 1.0, 0.75)
     rgb = np.stack([grey - np.maximum(-x, 0), grey - np.abs(x), grey - np.maximum(x, 0)], -1)
-    rows = (np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint8).reshape(len(x), -1)
-    rows = np.concatenate([np.zeros((len(x), 1), np.uint8), rows], 1)  # filter 0 before each row
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", x.shape[1], x.shape[0], 8, 2, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)) + chunk(b"IEND", b""))
+    png.write(path, rgb)
 
 
 def agreement(reference, valid, converged, fine, masks, coincident):

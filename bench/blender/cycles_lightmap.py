@@ -21,44 +21,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import cycles_bake  # noqa: E402
-from inside_blender import leave_after  # noqa: E402
-
-
-class Nodes:
-    """Arithmetic in a node tree: operands are sockets or numbers."""
-
-    def __init__(self, tree):
-        self.tree = tree
-
-    def new(self, kind, output=0, **inputs):
-        node = self.tree.nodes.new(kind)
-        for name, value in inputs.items():
-            self.feed(node.inputs[name.replace("_", " ")], value)
-        return node.outputs[output]
-
-    def feed(self, socket, value):
-        if isinstance(value, bpy.types.NodeSocket):
-            self.tree.links.new(value, socket)
-        else:
-            socket.default_value = value
-
-    def math(self, operation, a, b):
-        node = self.tree.nodes.new("ShaderNodeMath")
-        node.operation = operation
-        self.feed(node.inputs[0], a)
-        self.feed(node.inputs[1], b)
-        return node.outputs[0]
-
-    def product(self, a, b):
-        node = self.tree.nodes.new("ShaderNodeVectorMath")
-        node.operation = "MULTIPLY"
-        self.feed(node.inputs[0], a)
-        self.feed(node.inputs[1], b)
-        return node.outputs[0]
-
-    def reflected_once(self, depth=1.5):
-        """1 for light that has been reflected before it came here, 0 for light that comes straight."""
-        return self.math("GREATER_THAN", self.new("ShaderNodeLightPath", "Ray Depth"), depth)
+from inside_blender import Nodes, leave_after  # noqa: E402
 
 
 def build_material(number, m, opacity, folder):

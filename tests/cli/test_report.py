@@ -1,4 +1,4 @@
-"""`relume bake --report` as a person uses it. Usage: test_report.py RELUME [unittest arguments]"""
+"""`relume bake --report` and `relume verify -o` as a person uses them. Usage: test_report.py RELUME [unittest arguments]"""
 import hashlib
 import html.parser
 import json
@@ -9,6 +9,7 @@ import subprocess
 import sys
 import unittest
 
+import glb
 import test_cli
 from test_cli import relume
 
@@ -92,6 +93,29 @@ class Report(test_cli.CliTest):
         for name in ("floor", "wall", "before stitching", "texels per metre", "obscurance", "--quality"):
             self.assertIn(name, "".join(page.text))
 
+    def test_a_lightmap_has_its_pages_errors_and_seams(self):
+        self.bake("--layer", "lightmap", "--layer", "lightmap:part=direct", "--report", self.report, "--quality", "draft")
+        r = self.read()
+        self.assertEqual([(layer["name"], layer["kind"]) for layer in r["layers"]], [("lightmap", "lightmap"), ("lightmap.2", "lightmap")])
+        whole, direct = r["layers"]
+        self.assertGreater(whole["mean_value"], direct["mean_value"])
+        self.assertEqual(direct["parameters"]["part"], "direct")
+        for layer in r["layers"]:
+            # In the layer's own unit, not in shares: a lamp of 5 cd at 2 m gives 1.25 below it.
+            self.assertTrue(0 < layer["rms_error"] < 0.1 * layer["mean_value"], layer["rms_error"])
+            self.assertLessEqual(layer["seams"]["after"]["rms"], layer["seams"]["before"]["rms"] + 1e-9)
+            self.assertIn("stand_out", layer["suspects"])
+        page = Page((self.report / "report.html").read_text())
+        files = {p.name for p in self.report.iterdir()}
+        self.assertEqual(set(page.pictures), {f for f in files if f.endswith(".png")})
+        for file in ("layer-lightmap.png", "layer-lightmap.2.png", "lightmap-page0.png", "lightmap.2-page0-error.png"):
+            self.assertIn(file, files)
+        self.assertNotIn("target", "".join(page.text), "the quality's target is a share of ambient light")
+        words = shlex.split(r["command"])
+        before = self.baked.read_bytes()
+        relume(*words[1:], "--no-cache", cwd="/")
+        self.assertTrue(self.baked.read_bytes() == before)
+
     def test_the_printed_command_repeats_the_bake(self):
         odd = self.folder / "it's odd"
         odd.mkdir()
@@ -147,6 +171,75 @@ class Report(test_cli.CliTest):
         before = self.baked.read_bytes()
         self.bake("--no-cache", "--report", self.report)
         self.assertTrue(self.baked.read_bytes() == before)
+
+
+class Verification(test_cli.CliTest):
+    """A report of a bake beside its truth."""
+
+    def setUp(self):
+        super().setUp()
+        self.report = self.folder / "verified"
+        self.bake("--layer", "lightmap", "--quality", "medium")
+
+    def verify(self, *args, **more):
+        relume("verify", self.baked, "-o", self.report, "--points", 300, "--spp", 64, "--size", "64x36", "--picture-spp", 64, *args, **more)
+        return json.loads((self.report / "report.json").read_text())
+
+    def test_page_and_numbers(self):
+        r = self.verify()
+        page = Page((self.report / "report.html").read_text())
+        files = {p.name for p in self.report.iterdir()}
+        self.assertEqual(files, {"report.html", "report.json", "lightmap-view0-baked.png", "lightmap-view0-truth.png", "lightmap-view0-flip.png"})
+        self.assertEqual(set(page.pictures), {f for f in files if f.endswith(".png")})
+        for link in page.links:
+            self.assertTrue(link[1:] in page.anchors if link.startswith("#") else link in files, link)
+        self.assertEqual(r["asset"], str(self.baked))
+        self.assertIn("verify", r["typed"])
+        (c, ) = r["comparisons"]
+        self.assertEqual(c["id"], "lightmap")
+        self.assertEqual(sum(o["points"] for o in c["objects"]), c["points"])
+        self.assertEqual({o["name"] for o in c["objects"]}, {"floor", "wall", "box"})
+        total = sum(o["points"] * o["mean_true"] for o in c["objects"]) / c["points"]
+        self.assertAlmostEqual(total, c["mean_true"], delta=1e-6)
+        for o in c["objects"]:
+            self.assertIn(o["name"], "".join(page.text))
+        (view, ) = c["views"]
+        self.assertLess(abs(view["relative_bias"]), 0.03)
+        self.assertTrue(0 < view["noise_flip"] < view["mean_flip"] < 0.1, view)
+
+    def test_a_wrong_bake_is_seen_in_pictures_and_numbers(self):
+        lamp = self.folder / "brighter.json"
+        lamp.write_text(json.dumps([{"type": "point", "intensity": 10, "position": [0, 2, 0]}]))  # baked with 5
+        r = self.verify("--lights", lamp)["comparisons"][0]
+        self.assertAlmostEqual(r["relative_bias"], -0.5, delta=0.02)
+        self.assertAlmostEqual(r["views"][0]["relative_bias"], -0.5, delta=0.05)
+        self.assertGreater(r["views"][0]["mean_flip"], 0.1)
+        self.assertIn("too dark", (self.report / "report.html").read_text())
+
+    def test_every_camera_has_its_view(self):
+        b = glb.Builder()
+        b.node(b.quads([([-1, 0, -1], [0, 0, 2], [2, 0, 0])], b.material([0.8, 0.8, 0.8]), "floor"))
+        b.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": fov, "znear": 0.1}} for fov in (0.5, 0.8)]
+        for k, height in enumerate((2, 3)):
+            b.node(name="eye", camera=k, translation=[0, height, 0], rotation=[-0.7071, 0, 0, 0.7071])
+        b.light("point", 5, (0, 2, 0))
+        self.bake("--layer", "lightmap", "--quality", "draft", scene=b.write(self.folder / "floor.glb"))
+        views = self.verify()["comparisons"][0]["views"]
+        self.assertEqual([v["caption"] for v in views], ["Camera 0 of the file", "Camera 1 of the file"])
+
+    def test_a_folder_that_cannot_be_made_is_said_before_any_work(self):
+        done = relume("verify", self.baked, "-o", self.scene, expect=3)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertEqual(done.stdout, "")
+
+    def test_an_interruption_leaves_nothing(self):
+        process = subprocess.Popen([test_cli.RELUME, "verify", str(self.baked), "-o", str(self.report), "--points", "50", "--picture-spp", "100000"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        process.stdout.readline()  # the places are done, the pictures begin
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertFalse(self.report.exists())
 
 
 if __name__ == "__main__":

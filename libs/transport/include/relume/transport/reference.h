@@ -10,7 +10,7 @@
 // single-sided materials emit on their front only. Shading normals turn the lobes, but no light passes
 // through a surface: directions under its true plane count for nothing. Unlit materials (KHR_materials_unlit)
 // are black to light and show their colour to the eye. Thin transmission goes straight on, tinted, also for
-// rays to lights. Area lights of a light file are disks that are seen and block nothing. Limits: no
+// rays to lights. Area lights of a light file (disks, polygons) are seen and block nothing. Limits: no
 // refraction, no volumes; caustics of small lights in near mirrors converge slowly, and those of point lights
 // in mirrors through transmission are as sharp as alpha = 0.001 lets them be.
 #pragma once
