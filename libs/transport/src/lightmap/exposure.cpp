@@ -58,21 +58,21 @@ class TexelParts {
   bool free(std::span<const std::uint32_t> group) {
     const atlas::SurfacePoint& first = texels_.points[group[0]];
     const auto width = static_cast<std::uint32_t>(texels_.width);
-    std::array<std::array<std::uint32_t, 2>, 4> rows, columns;  // first and last texel of each
+    std::array<std::array<std::uint32_t, 2>, kGroupSide> rows, columns;  // first and last texel of each
     for (auto* lines : {&rows, &columns}) lines->fill({scene::kNone, scene::kNone});
     const float height = 0.5f * kLift * texelSize(first);
     clear();
     for (std::uint32_t k = 0; k < group.size(); ++k) {
       const atlas::SurfacePoint& p = texels_.points[group[k]];
       if (p.sample_count > 0 || p.geometric_normal != first.geometric_normal) return false;
-      const std::uint32_t x = p.texel % width % 4, y = p.texel / width % 4;
+      const std::uint32_t x = p.texel % width % kGroupSide, y = p.texel / width % kGroupSide;
       for (auto* line : {&rows[y], &columns[x]}) (*line)[(*line)[0] == scene::kNone ? 0 : 1] = group[k];
       setRay(k, trace::offsetOrigin(p.position, p.geometric_normal), p.geometric_normal, 2.0f * height);
     }
     if (tracer_.occludedPacket(packet_) != 0) return false;
     clear();
-    for (std::uint32_t i = 0; i < 4; ++i)
-      setAcross(i, rows[i], height, true), setAcross(4 + i, columns[i], height, false);
+    for (std::uint32_t i = 0; i < kGroupSide; ++i)
+      setAcross(i, rows[i], height, true), setAcross(kGroupSide + i, columns[i], height, false);
     return tracer_.occludedPacket(packet_) == 0;
   }
 
