@@ -110,7 +110,7 @@ class Report(test_cli.CliTest):
         self.assertEqual(set(page.pictures), {f for f in files if f.endswith(".png")})
         for file in ("layer-lightmap.png", "layer-lightmap.2.png", "lightmap-page0.png", "lightmap.2-page0-error.png"):
             self.assertIn(file, files)
-        self.assertNotIn("target", "".join(page.text), "the quality's target is a share of ambient light")
+        self.assertNotIn("target 0.02", "".join(page.text), "the quality's target is a share of ambient light")
         words = shlex.split(r["command"])
         before = self.baked.read_bytes()
         relume(*words[1:], "--no-cache", cwd="/")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A texel stands out when it is far from what the texels about it suggest. Each of the four lines through it
-// (along the page's x, y and diagonals) has a say where it has valid texels of the same chart: the value
+// (along the page's x, y and diagonals) has a say where it has valid texels of the same chart that face about
+// the same way (a hem folded into the chart of its cloth differs from it rightly): the value
 // ought to lie between those of the two neighbours, or, at the border of a chart, between the next one and
 // the value at which the two next ones aim; the nearest value there is the line's suggestion. The median of
 // the four is the suggestion, so neither a slope nor the edge of a shadow stands out, while a leak one texel
@@ -22,6 +23,7 @@ namespace relume::bake {
 namespace {
 
 constexpr float kVisibleShare = 0.2f, kDarkShare = 0.02f, kErrors = 6;
+constexpr float kAlike = 0.7f;          // cosine between normals of texels that say something of each other
 constexpr float kFewBacks = 1.0f / 16;  // share of rays that met back faces; from a quarter on it is buried
 
 class Neighbourhood {
@@ -41,6 +43,9 @@ class Neighbourhood {
                                                 static_cast<std::uint32_t>(x)];
     return other != scene::kNone && texels_.points[other].chart == p.chart ? other : scene::kNone;
   }
+  bool alike(std::size_t i, std::uint32_t other) const {
+    return glm::dot(texels_.points[i].shading_normal, texels_.points[other].shading_normal) >= kAlike;
+  }
 
  private:
   const atlas::Texels& texels_;
@@ -54,7 +59,7 @@ std::optional<float> suggestion(const Neighbourhood& near, std::span<const float
                                 std::span<const std::uint8_t> valid, std::size_t i) {
   const auto value = [&](int dx, int dy) -> std::optional<float> {
     const std::uint32_t p = near.at(i, dx, dy);
-    return p != scene::kNone && valid[p] ? std::optional(values[p]) : std::nullopt;
+    return p != scene::kNone && valid[p] && near.alike(i, p) ? std::optional(values[p]) : std::nullopt;
   };
   float sum = 0, least = kInfinity, most = -kInfinity;
   int count = 0;

@@ -170,6 +170,15 @@ TEST_F(Suspects, AnotherChartHasNoSay) {
   EXPECT_EQ(find().stand_out, static_cast<std::size_t>(kHeight));
 }
 
+TEST_F(Suspects, AHemFoldedIntoTheChartIsNoLeak) {
+  for (int x = 0; x < kWidth; ++x) at(x, 0) = 0.1f;
+  EXPECT_EQ(find().stand_out, static_cast<std::size_t>(kWidth)) << "a dark row of the same surface is one";
+  for (int x = 0; x < kWidth; ++x) texels_.points[index(x, 0)].shading_normal = {0, 1, 0};
+  EXPECT_EQ(find().stand_out, 0u);
+  at(4, 0) = 0.9f;
+  EXPECT_EQ(find().stand_out, 0u) << "two texels beside it are too few to tell";
+}
+
 TEST_F(Suspects, TexelsBesideInvalidOnesAndThoseThatSeeBacks) {
   layer_.valid[index(4, 4)] = 0;
   at(4, 4) = 100;  // whatever is there has no say
