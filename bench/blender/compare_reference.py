@@ -10,7 +10,7 @@ materials as glTF means them (cycles_materials.py tells how, and what still diff
 
 Usage: bench/blender/compare_reference.py SCENES_FOLDER [--only NAME,...] [--work FOLDER] [--relume build/release/apps/relume/relume]
 SCENES_FOLDER: holds the public scenes that SCENES names. Writes docs/validation/reference.json, pictures, and the tables of reference.md.
-Needs Blender 3.4 and numpy. Three quarters of an hour on 2 cores; --work keeps what was rendered, for another run.
+Needs Blender 3.4 and numpy. Ten minutes on 2 cores; --work keeps what was rendered, for another run.
 """
 import argparse
 import json
@@ -37,13 +37,13 @@ SIZE = (320, 240)
 BOUNCES = 256
 
 SCENES = {
-    "living-room": {"file": "furnished-living-room/furnished_living_room.gltf", "eye": [2.2, 1.5, 2.2], "target": [-1.5, 0.9, -1.5], "fov": 60, "samples": 1024,
+    "living-room": {"file": "furnished-living-room/furnished_living_room.gltf", "eye": [2.2, 1.5, 2.2], "target": [-1.5, 0.9, -1.5], "fov": 60, "samples": 64,
                     "what": "lit by its window (emissive, textured surfaces, normal maps, a varnished floor)"},
     "chair": {"file": "mixed-lighting/MixedLightingExample.gltf", "lights": ROOT / "bench/lights/chair.json", "eye": [0.9, 0.8, 1.3], "target": [-0.05, 0.2, -0.1],
-              "fov": 40, "samples": 1024, "what": "a sun with a size, a point and a spot light, a constant sky; metal, wood, velvet"},
+              "fov": 40, "samples": 64, "what": "a sun with a size, a point and a spot light, a constant sky; metal, wood, velvet"},
     "helmet": {"file": "flight-helmet/FlightHelmet.gltf", "environment": "env/spiaggia_di_mondello_1k.hdr", "eye": [0.35, 0.5, 0.9], "target": [0, 0.36, 0], "fov": 40,
-               "samples": 512, "what": "under a photographed sky; metal, leather, glass by textures, normal maps"},
-    "spheres": {"file": "roughness-spheres/scene.gltf", "environment": "env/st_fagans_interior_1k.hdr", "eye": [14, 2, 0], "target": [0, 0, 0], "fov": 50, "samples": 512,
+               "samples": 64, "what": "under a photographed sky; metal, leather, glass by textures, normal maps"},
+    "spheres": {"file": "roughness-spheres/scene.gltf", "environment": "env/st_fagans_interior_1k.hdr", "eye": [14, 2, 0], "target": [0, 0, 0], "fov": 50, "samples": 64,
                 "what": "in a photographed room; a dark dielectric, from a mirror to rough"},
 }
 MATERIALS = {"lambert": "diffuse", "full": "as in the file"}

@@ -3,12 +3,11 @@
 `lambert`: what `relume render --materials lambert` shows, diffuse reflection of base colour (1 - metallic).
 
 `full`: relume's metallic-roughness model (libs/transport/include/relume/transport/bsdf.h), put together from Cycles' parts. The importer's own
-material will not do: Blender's Principled shader has another diffuse lobe (Disney's) and does not take from it what the specular lobe
-reflects. The specular lobes are Cycles' GGX with multiple scattering (Heitz et al. 2016), coloured as a metal is: F0 at normal incidence, white at
-grazing. What the dielectric lobe leaves for the diffuse one, 1 - E(view, roughness), is a table that is made here, by quadrature. Where the
-models still differ: Cycles follows multiple scattering by a random walk where relume scales the lobe (Turquin 2019); masking and shadowing are not
-correlated; between F0 and white Cycles goes along the Fresnel curve of an index of refraction, relume along Schlick's. The index is the one whose curve
-is closest: 0.008 RMS over the cosine, but up to 0.04 of the light from one direction where that grazes.
+material will not do: Blender's Principled shader has another diffuse lobe (Disney's), does not take from it what the specular lobe reflects, and
+follows another Fresnel curve. Here the specular lobe is Cycles' GGX without Fresnel's term, scaled to what relume's lobe reflects of light from the side of
+the view; that depends on cosine, roughness and F0, by a table that is made here, by quadrature. So every surface reflects as much as relume's, and
+as sharply; where in the lobe differs a little: Fresnel's term within it, and masking and shadowing, which are not correlated in Cycles. (Cycles' GGX
+with multiple scattering will not do either: beside another lobe it reflects some percent too much in a white furnace.)
 
 Emission leaves the front alone unless the material is double-sided. Alpha is kept.
 """
@@ -19,13 +18,12 @@ import numpy as np
 
 from inside_blender import Nodes
 
-DIELECTRIC = 0.04
+DIELECTRIC = 0.04  # F0
 TABLE = 64  # entries along the root of the cosine, and along roughness
-INDEX = 1.42  # of refraction: see above
 
 
-def reflected_share(cos_o, alpha, f0=DIELECTRIC):
-    """What a GGX lobe with Schlick's factor reflects of light from one side, compensated as [Turquin 2019] (16) has it."""
+def reflected(cos_o, alpha):
+    """(scale, bias, own): what a GGX lobe with Schlick's factor reflects of light from one side is F0 scale + bias; Cycles' lobe reflects `own`."""
     # A quadrature over the normals that can be seen (Heitz 2018), with the lobe's weight for each.
     n = 128
     u, v = (np.stack(np.meshgrid(np.arange(n), np.arange(n))) + 0.5).reshape(2, -1) / n
@@ -47,19 +45,19 @@ def reflected_share(cos_o, alpha, f0=DIELECTRIC):
     a2 = alpha**2
     below = cos_i * np.sqrt(a2 + (1 - a2) * cos_o**2) + cos_o * np.sqrt(a2 + (1 - a2) * cos_i**2)
     masking = 2 * cos_o / (cos_o + np.sqrt(a2 + (1 - a2) * cos_o**2))
-    share = np.where((cos_i > 0) & (o_h > 0), 2 * cos_i * cos_o / np.maximum(below, 1e-12) / masking, 0)
-    weight = (1 - np.clip(o_h, 0, 1))**5
-    whole = share.mean()
-    return (share * (f0 + (1 - f0) * weight)).mean() * (1 + f0 * (1 / whole - 1))
+    seen = (cos_i > 0) & (o_h > 0)
+    share = np.where(seen, 2 * cos_i * cos_o / np.maximum(below, 1e-12) / masking, 0)
+    own = np.where(seen, 2 * cos_i / np.maximum(cos_i + np.sqrt(a2 + (1 - a2) * cos_i**2), 1e-12), 0)
+    grazing = (1 - np.clip(o_h, 0, 1))**5
+    return (share * (1 - grazing)).mean(), (share * grazing).mean(), own.mean()
 
 
-def share_table():
-    """An image of TABLE x TABLE: columns by the root of the cosine, rows by roughness."""
+def table():
+    """An image of TABLE x TABLE, what reflected() tells in red, green and blue: columns by the root of the cosine, rows by roughness."""
     image = bpy.data.images.new("what the specular lobe reflects", TABLE, TABLE, float_buffer=True, is_data=True)
     places = (np.arange(TABLE) + 0.5) / TABLE
-    values = [[reflected_share(t**2, max(r**2, 1e-3)) for t in places] for r in places]
     pixels = np.ones((TABLE, TABLE, 4), np.float32)
-    pixels[..., :3] = np.array(values, np.float32)[..., None]
+    pixels[..., :3] = [[reflected(t**2, max(r**2, 1e-3)) for t in places] for r in places]
     image.pixels.foreach_set(pixels.ravel())
     image.update()
     return image
@@ -124,18 +122,16 @@ class Rebuilt:
     def lambert(self):
         return self.diffuse(self.body(), False)
 
-    def lobe(self, f0):
-        node = self.tree.nodes.new("ShaderNodeBsdfPrincipled")
-        node.distribution = "MULTI_GGX"
-        self.nodes.feed(node.inputs["Base Color"], f0)
-        node.inputs["Metallic"].default_value = 1
-        # Of the "specular" the index follows, by the inverse of how Cycles reads it.
-        node.inputs["Specular"].default_value = ((INDEX - 1) / (INDEX + 1))**2 / 0.08
+    def lobe(self, colour):
+        node = self.tree.nodes.new("ShaderNodeBsdfGlossy")
+        node.distribution = "GGX"
+        self.nodes.feed(node.inputs["Color"], colour)
         self.nodes.feed(node.inputs["Roughness"], self.source("Roughness"))
         self.normal(node)
         return node.outputs[0]
 
-    def full(self, table):
+    def reflected(self, image):
+        """Sockets of what the table holds for this place and view."""
         shading = self.tree.nodes.new("ShaderNodeNewGeometry")
         normal = self.old.inputs["Normal"]
         normal = normal.links[0].from_socket if normal.is_linked else shading.outputs["Normal"]
@@ -143,12 +139,33 @@ class Rebuilt:
         place = self.tree.nodes.new("ShaderNodeCombineXYZ")
         self.nodes.feed(place.inputs["X"], self.nodes.math("POWER", self.nodes.math("MAXIMUM", cosine, 0), 0.5))
         self.nodes.feed(place.inputs["Y"], self.source("Roughness"))
-        share = self.tree.nodes.new("ShaderNodeTexImage")
-        share.image, share.extension, share.interpolation = table, "EXTEND", "Linear"
-        self.tree.links.new(place.outputs[0], share.inputs[0])
-        left = self.nodes.math("SUBTRACT", 1, share.outputs["Color"])
-        dielectric = self.sum(self.lobe((DIELECTRIC, DIELECTRIC, DIELECTRIC, 1)), self.diffuse(self.scaled(self.colour("Base Color"), left), True))
-        return self.mixed(self.source("Metallic"), dielectric, self.lobe(self.colour("Base Color")))
+        look = self.tree.nodes.new("ShaderNodeTexImage")
+        look.image, look.extension, look.interpolation = image, "EXTEND", "Linear"
+        self.tree.links.new(place.outputs[0], look.inputs[0])
+        split = self.tree.nodes.new("ShaderNodeSeparateRGB")
+        self.tree.links.new(look.outputs["Color"], split.inputs[0])
+        return split.outputs
+
+    def share(self, f0, scale, bias):
+        """What the compensated lobe reflects ([Turquin 2019] (16)): (F0 scale + bias) (1 + F0 (1 / (scale + bias) - 1))."""
+        math = self.nodes.math
+        lost = math("SUBTRACT", math("DIVIDE", 1, math("ADD", scale, bias)), 1)
+        return math("MULTIPLY", math("ADD", math("MULTIPLY", f0, scale), bias), math("ADD", 1, math("MULTIPLY", f0, lost)))
+
+    def full(self, image):
+        scale, bias, own = self.reflected(image)
+        divided = lambda share: self.nodes.math("DIVIDE", share, own)
+        specular = self.share(DIELECTRIC, scale, bias)
+        left = self.nodes.math("SUBTRACT", 1, specular)
+        dielectric = self.sum(self.lobe(divided(specular)), self.diffuse(self.scaled(self.colour("Base Color"), left), True))
+        metallic = self.source("Metallic")
+        if metallic == 0.0:
+            return dielectric
+        channels, colour = self.tree.nodes.new("ShaderNodeSeparateRGB"), self.tree.nodes.new("ShaderNodeCombineRGB")
+        self.nodes.feed(channels.inputs[0], self.colour("Base Color"))
+        for f0, socket in zip(channels.outputs, colour.inputs):
+            self.nodes.feed(socket, divided(self.share(f0, scale, bias)))
+        return self.mixed(metallic, dielectric, self.lobe(colour.outputs[0]))
 
     def emission(self):
         strength = self.source("Emission Strength")
@@ -171,8 +188,8 @@ class Rebuilt:
 
 def rebuild(materials, kind):
     """kind: "lambert" or "full". Unlit materials are left as they are."""
-    table = share_table() if kind == "full" else None
+    image = table() if kind == "full" else None
     for material in materials:
         rebuilt = Rebuilt(material) if material.use_nodes else None
         if rebuilt and rebuilt.old:
-            rebuilt.finish(rebuilt.full(table) if kind == "full" else rebuilt.lambert())
+            rebuilt.finish(rebuilt.full(image) if kind == "full" else rebuilt.lambert())
