@@ -49,15 +49,15 @@ std::vector<std::uint32_t> inOrder(std::span<const Piece> pieces) {
 }
 
 /// One of every share of the area along the curve.
-std::vector<Feature> firstCentres(std::span<const Piece> pieces, std::span<const Feature> features,
-                                  std::size_t count, std::uint64_t seed) {
-  double area = 0, so_far = 0;
-  for (const Piece& p : pieces) area += static_cast<double>(p.area);
+std::vector<Feature> firstCentres(std::span<const Piece> pieces, std::span<const double> weights,
+                                  std::span<const Feature> features, std::size_t count, std::uint64_t seed) {
+  double so_far = 0;
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
   const double offset = static_cast<double>(sobol2(0, streamOf(seed, 0, 0)).x);
   std::vector<Feature> centres;
   for (const std::uint32_t i : inOrder(pieces)) {
-    so_far += static_cast<double>(pieces[i].area);
-    if (so_far >= (static_cast<double>(centres.size()) + offset) * area / static_cast<double>(count) &&
+    so_far += weights[i];
+    if (so_far >= (static_cast<double>(centres.size()) + offset) * all / static_cast<double>(count) &&
         centres.size() < count)
       centres.push_back(features[i]);
   }
@@ -66,14 +66,14 @@ std::vector<Feature> firstCentres(std::span<const Piece> pieces, std::span<const
 }
 
 /// Means of clusters. Those that have no piece become the worst placed pieces.
-void moveCentres(std::span<const Piece> pieces, std::span<const Feature> features,
+void moveCentres(std::span<const double> weights, std::span<const Feature> features,
                  std::span<const std::uint32_t> of, std::vector<Feature>& centres) {
   std::vector<std::array<double, 6>> sum(centres.size(), std::array<double, 6>{});
   std::vector<double> weight(centres.size(), 0.0);
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const double w = std::max(static_cast<double>(pieces[i].area), 1e-30);
-    weight[of[i]] += w;
-    for (std::size_t a = 0; a < 6; ++a) sum[of[i]][a] += w * static_cast<double>(features[i][a]);
+    if (of[i] == scene::kNone) continue;
+    weight[of[i]] += weights[i];
+    for (std::size_t a = 0; a < 6; ++a) sum[of[i]][a] += weights[i] * static_cast<double>(features[i][a]);
   }
   std::vector<std::size_t> empty;
   for (std::size_t c = 0; c < centres.size(); ++c) {
@@ -84,25 +84,26 @@ void moveCentres(std::span<const Piece> pieces, std::span<const Feature> feature
     for (std::size_t a = 0; a < 6; ++a) centres[c][a] = static_cast<float>(sum[c][a] / weight[c]);
   }
   if (empty.empty()) return;
-  std::vector<std::pair<float, std::uint32_t>> worst(features.size());
+  std::vector<std::pair<double, std::uint32_t>> worst(features.size());
   for (std::uint32_t i = 0; i < features.size(); ++i)
-    worst[i] = {-pieces[i].area * squaredDistance(features[i], centres[of[i]]), i};
+    worst[i] = {-weights[i] * static_cast<double>(squaredDistance(features[i], centres[of[i]])), i};
   const std::size_t some = std::min(empty.size(), worst.size());
   std::partial_sort(worst.begin(), worst.begin() + static_cast<std::ptrdiff_t>(some), worst.end());
   for (std::size_t k = 0; k < some; ++k) centres[empty[k]] = features[worst[k].second];
 }
 
 /// Numbers clusters without gaps and takes their means.
-void renumber(std::span<const Piece> pieces, std::span<const Feature> features, Clusters& clusters) {
-  std::vector<std::uint32_t> number(
-      *std::max_element(clusters.of.begin(), clusters.of.end()) + std::size_t{1}, scene::kNone);
-  for (const std::uint32_t c : clusters.of) number[c] = 0;
+void renumber(std::span<const double> weights, std::span<const Feature> features, Clusters& clusters) {
+  std::vector<std::uint32_t> number(clusters.of.size() + clusters.size(), scene::kNone);
+  for (const std::uint32_t c : clusters.of)
+    if (c != scene::kNone) number[c] = 0;
   std::uint32_t count = 0;
   for (std::uint32_t& n : number)
     if (n == 0) n = count++;
-  for (std::uint32_t& c : clusters.of) c = number[c];
+  for (std::uint32_t& c : clusters.of)
+    if (c != scene::kNone) c = number[c];
   clusters.centre.assign(count, Feature{});
-  moveCentres(pieces, features, clusters.of, clusters.centre);
+  moveCentres(weights, features, clusters.of, clusters.centre);
 }
 
 std::vector<Feature> featuresOf(std::span<const Piece> pieces, const Clusters& clusters) {
@@ -112,10 +113,18 @@ std::vector<Feature> featuresOf(std::span<const Piece> pieces, const Clusters& c
   return features;
 }
 
-float sideOf(std::span<const Piece> pieces, std::size_t count) {
-  double area = 0;
-  for (const Piece& p : pieces) area += static_cast<double>(p.area);
-  return static_cast<float>(std::sqrt(area / static_cast<double>(std::max<std::size_t>(count, 1))));
+std::vector<double> weightsOf(std::span<const Piece> pieces, std::span<const float> importance) {
+  std::vector<double> weights;
+  weights.reserve(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    weights.push_back(std::max(static_cast<double>(pieces[i].area * importance[i]), 1e-30));
+  return weights;
+}
+
+/// Of a square that is one of `count` equal parts.
+float sideOf(std::span<const double> weights, std::size_t count) {
+  return static_cast<float>(std::sqrt(std::accumulate(weights.begin(), weights.end(), 0.0) /
+                                      static_cast<double>(std::max<std::size_t>(count, 1))));
 }
 
 }  // namespace
@@ -125,13 +134,14 @@ Feature Clusters::feature(Point p, Normal n) const {
   return {p.x, p.y, p.z, m.x, m.y, m.z};
 }
 
-Clusters makeClusters(std::span<const Piece> pieces, std::size_t count, float normal_weight,
-                      std::uint64_t seed, Progress& progress) {
+Clusters makeClusters(std::span<const Piece> pieces, std::span<const float> importance,
+                      const ClusterOptions& options, Progress& progress) {
   Clusters clusters;
   if (pieces.empty()) return clusters;
-  clusters.normal_length = std::max(normal_weight * sideOf(pieces, count), 1e-20f);
+  const std::vector<double> weights = weightsOf(pieces, importance);
+  clusters.normal_length = std::max(options.normal_weight * sideOf(weights, options.count), 1e-20f);
   const std::vector<Feature> features = featuresOf(pieces, clusters);
-  clusters.centre = firstCentres(pieces, features, count, seed);
+  clusters.centre = firstCentres(pieces, weights, features, options.count, options.seed);
   clusters.of.assign(pieces.size(), 0);
   for (int round = 0; round < kRounds; ++round) {
     const Nearest nearest(clusters.centre);
@@ -143,24 +153,25 @@ Clusters makeClusters(std::span<const Piece> pieces, std::size_t count, float no
       }
     });
     progress.throwIfCancelled();
-    moveCentres(pieces, features, clusters.of, clusters.centre);
+    moveCentres(weights, features, clusters.of, clusters.centre);
   }
-  renumber(pieces, features, clusters);
+  renumber(weights, features, clusters);
   return clusters;
 }
 
 namespace {
 
-/// From how far above the surface pieces look, in sides of a cluster. Low enough to be parted by low walls
-/// or not at all: seen from either height is seen.
+/// From how far above the surface pieces look, in sides of a cluster: over a sill, under a shelf. Seen from
+/// either height is seen.
 constexpr float kHeights[] = {0.1f, 0.5f};
 constexpr std::size_t kCandidates = 8;  // clusters that a piece may go to
-constexpr int kMostParts = 4;           // of a cluster that walls divide
+constexpr double kSliver = 0.05;        // of the mean weight of clusters: no cluster of its own
+constexpr int kMostParts = 4;           // of what is left of a cluster
 
-class Views {
+class Belonging {
  public:
-  Views(const trace::Tracer& tracer, std::span<const Piece> pieces, float side)
-      : tracer_(tracer), places_(pieces.size()) {
+  Belonging(const trace::Tracer& tracer, std::span<const Piece> pieces, const LightView& light, float side)
+      : tracer_(tracer), light_(light), places_(pieces.size()) {
     parallelFor(pieces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Point start = trace::offsetOrigin(pieces[i].position, pieces[i].normal);
@@ -170,6 +181,18 @@ class Views {
       }
     });
   }
+  bool together(std::size_t a, std::size_t b) const {
+    switch (light_.compare(a, b)) {
+      case LightView::Likeness::kAlike:
+        return true;
+      case LightView::Likeness::kApart:
+        return false;
+      default:
+        return seen(a, b);
+    }
+  }
+
+ private:
   bool seen(std::size_t a, std::size_t b) const {
     for (std::size_t h = 0; h < std::size(kHeights); ++h) {
       const Vec3 way = places_[b][h] - places_[a][h];
@@ -179,17 +202,19 @@ class Views {
     return false;
   }
 
- private:
   const trace::Tracer& tracer_;
+  const LightView& light_;
   std::vector<std::array<Point, std::size(kHeights)>> places_;
 };
 
 }  // namespace
 
-void partAtWalls(const trace::Tracer& tracer, std::span<const Piece> pieces, Clusters& clusters,
-                 Progress& progress) {
+void partByLight(const trace::Tracer& tracer, std::span<const Piece> pieces,
+                 std::span<const float> importance, const LightView& light, Slivers slivers,
+                 Clusters& clusters, Progress& progress) {
   if (pieces.empty()) return;
-  const Views views(tracer, pieces, sideOf(pieces, clusters.size()));
+  const std::vector<double> weights = weightsOf(pieces, importance);
+  const Belonging belonging(tracer, pieces, light, sideOf(weights, clusters.size()));
   const std::vector<Feature> features = featuresOf(pieces, clusters);
   // The middle of a cluster: its piece that is nearest to the mean.
   std::vector<std::pair<float, std::uint32_t>> middle(clusters.size(), {kInfinity, scene::kNone});
@@ -208,28 +233,56 @@ void partAtWalls(const trace::Tracer& tracer, std::span<const Piece> pieces, Clu
         const Feature& c = clusters.centre[found[k].index];
         const Vec3 n = Vec3(c[3], c[4], c[5]) / clusters.normal_length;
         if (glm::dot(n, pieces[i].normal) < 0.7f * glm::length(n)) continue;
-        if (views.seen(i, middle[found[k].index].second)) of[i] = found[k].index;
+        if (belonging.together(i, middle[found[k].index].second)) of[i] = found[k].index;
       }
     }
   });
   progress.throwIfCancelled();
-  // What sees no middle: parts of what was its cluster.
+  // What belongs nowhere: parts of what was its cluster.
   std::vector<std::vector<std::uint32_t>> left(clusters.size());
   for (std::uint32_t i = 0; i < pieces.size(); ++i)
     if (of[i] == scene::kNone) left[clusters.of[i]].push_back(i);
+  const double small =
+      kSliver * std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(clusters.size());
   auto next = static_cast<std::uint32_t>(clusters.size());
+  std::vector<std::uint32_t> part;
   for (std::vector<std::uint32_t>& rest : left)
-    for (int part = 1; !rest.empty(); ++part) {
+    for (int number = 1; !rest.empty(); ++number) {
       const std::uint32_t first = rest[0];
+      part.clear();
       std::erase_if(rest, [&](std::uint32_t i) {
-        if (part < kMostParts && i != first && !views.seen(first, i)) return false;
-        of[i] = next;
+        if (number < kMostParts && i != first && !belonging.together(first, i)) return false;
+        part.push_back(i);
         return true;
       });
-      ++next;
+      double weight = 0;
+      for (const std::uint32_t i : part) weight += weights[i];
+      const bool sliver = weight < small;
+      bool used = false;
+      for (const std::uint32_t i : part) {
+        if (sliver && slivers == Slivers::kLeftOutIfDark && light.dark(i)) continue;
+        const bool stays =
+            sliver && light.compare(i, middle[clusters.of[i]].second) != LightView::Likeness::kApart;
+        of[i] = stays ? clusters.of[i] : next;
+        used |= !stays;
+      }
+      next += used;
     }
   clusters.of = std::move(of);
-  renumber(pieces, features, clusters);
+  renumber(weights, features, clusters);
+}
+
+Clusters makeLitClusters(const trace::Tracer& tracer, std::span<const Piece> pieces,
+                         std::span<const float> importance, const LightView& light,
+                         const ClusterOptions& options, Slivers slivers, Progress& progress) {
+  Clusters clusters = makeClusters(pieces, importance, options, progress);
+  partByLight(tracer, pieces, importance, light, slivers, clusters, progress);
+  if (clusters.size() <= options.count + options.count / 8) return clusters;
+  ClusterOptions fewer = options;
+  fewer.count = std::max<std::size_t>(options.count * options.count / clusters.size(), 1);
+  clusters = makeClusters(pieces, importance, fewer, progress);
+  partByLight(tracer, pieces, importance, light, slivers, clusters, progress);
+  return clusters;
 }
 
 }  // namespace relume::transport

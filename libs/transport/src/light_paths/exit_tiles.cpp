@@ -29,13 +29,14 @@ struct Near {
 ExitTiles makeTiles(std::span<const Exit> exits, std::uint32_t each, float overlap, std::uint64_t seed,
                     Progress& progress) {
   // All exits count alike: tiles shall have equal numbers of them.
-  std::vector<Piece> pieces;
   float area = 0;
   for (const Exit& e : exits) area += e.area;
+  std::vector<Piece> pieces;
   for (const Exit& e : exits)
     pieces.push_back({e.position, e.normal, area / static_cast<float>(exits.size())});
   const std::size_t count = std::max<std::size_t>((exits.size() + each / 2) / each, 1);
-  const Clusters clusters = makeClusters(pieces, count, kNormalWeight, seed, progress);
+  const Clusters clusters =
+      makeClusters(pieces, std::vector<float>(pieces.size(), 1.0f), {count, kNormalWeight, seed}, progress);
 
   const Nearest nearest(clusters.centre);
   std::vector<Near> near(exits.size());

@@ -28,9 +28,11 @@
 namespace relume::transport {
 namespace {
 
-constexpr std::size_t kMostPieces = 1u << 16;
+constexpr std::size_t kPiecesOfElement = 4;
 // What a turn of the normal costs in clusters (Clusters).
-constexpr float kEntryNormalWeight = 4.0f, kElementNormalWeight = 4.0f;
+constexpr float kEntryNormalWeight = 1.0f, kElementNormalWeight = 1.0f;
+// How much less finely that is divided which no light comes to (LightView).
+constexpr float kLeastEntries = 1.0f / 32, kLeastElements = 1.0f / 8, kLeastPieces = 1.0f / 8;
 constexpr double kResidual = 1e-4;
 constexpr std::uint32_t kFewestExitRays = 16;  // of a texel
 constexpr std::uint32_t kPiecePlaces = 4;      // where light on a piece is taken
@@ -119,7 +121,6 @@ struct LightPaths::Impl {
         surface{tracer, texels, lookup, exposure},
         sides(surface, groups, std::uint64_t{options.element_rays} * options.elements, options.seed,
               progress),
-        pieces(makePieces(texels, sides, kMostPieces)),
         exit_patches(makePatches(texels, options.exit_side, sides.buriedPoints())),
         gathered_from(gatheredFrom(exit_patches, sides)),
         directions(firstExitRays(), std::max(firstExitRays(), std::bit_ceil(options.exit_rays)),
@@ -127,9 +128,8 @@ struct LightPaths::Impl {
         exit_scene{surface,    exit_patches,      sides,       pieces, elements, reflectance,
                    directions, options.exit_rays, options.seed} {
     placeExits(progress);
-    placeEntries(progress);
-    makeElementsOf(progress);
-    light = std::make_unique<ElementLight>(
+    placeAll(progress);
+    reflected = std::make_unique<ElementLight>(
         elements, entries.size(),
         [&](std::size_t block, std::span<float> radiosity) { fill(block, radiosity); }, kResidual, progress);
     ray_count = sides.rays();
@@ -150,10 +150,29 @@ struct LightPaths::Impl {
     tiles = makeTiles(exits.all, options.tile_exits, options.tile_overlap, options.seed, progress);
   }
 
-  void placeEntries(Progress& progress) {
+  void placeAll(Progress& progress) {
     const Stage stage(progress, "entries", 1);
-    Clusters clusters = makeClusters(pieces.all, options.entries, kEntryNormalWeight, options.seed, progress);
-    partAtWalls(tracer, pieces.all, clusters, progress);
+    const LightSet test = findLights(tracer, boxes, LightView::kPlaces, {}, options.seed, progress);
+    const std::size_t most = kPiecesOfElement * std::max(options.elements, options.entries);
+    {
+      const Pieces coarse = makePieces(surface, sides, most);
+      const LightView view(tracer, coarse.all, test, progress);
+      pieces = refinedPieces(surface, sides, coarse, view.importance(coarse.all, kLeastPieces), most);
+    }
+    const LightView view(tracer, pieces.all, test, progress);
+    placeEntries(view, progress);
+    placeElements(view, progress);
+  }
+
+  void placeEntries(const LightView& light, Progress& progress) {
+    const std::vector<float> importance = light.importance(pieces.all, kLeastEntries);
+    const Clusters clusters = makeLitClusters(tracer, pieces.all, importance, light,
+                                              {options.entries, kEntryNormalWeight, options.seed},
+                                              Slivers::kLeftOutIfDark, progress);
+    double important = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      important += static_cast<double>(pieces.all[i].area * importance[i]);
+    spacing = static_cast<float>(std::sqrt(important / static_cast<double>(clusters.size())));
     entry_of_piece = clusters.of;
     std::vector<std::uint32_t> of_side(sides.size(), scene::kNone);
     for (std::size_t side = 0; side < of_side.size(); ++side)
@@ -163,7 +182,8 @@ struct LightPaths::Impl {
     entries.samples_each = options.entry_samples;
     for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
     entries.area.assign(clusters.size(), 0.0f);
-    for (std::size_t i = 0; i < pieces.size(); ++i) entries.area[entry_of_piece[i]] += pieces.all[i].area;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      if (entry_of_piece[i] != scene::kNone) entries.area[entry_of_piece[i]] += pieces.all[i].area;
     for (const Feature& c : clusters.centre) {
       entries.centre.emplace_back(c[0], c[1], c[2]);
       const Vec3 n(c[3], c[4], c[5]);
@@ -171,10 +191,11 @@ struct LightPaths::Impl {
     }
   }
 
-  void makeElementsOf(Progress& progress) {
-    Clusters clusters =
-        makeClusters(pieces.all, options.elements, kElementNormalWeight, options.seed + 1, progress);
-    partAtWalls(tracer, pieces.all, clusters, progress);
+  void placeElements(const LightView& light, Progress& progress) {
+    const std::vector<float> importance = light.importance(pieces.all, kLeastElements);
+    const Clusters clusters =
+        makeLitClusters(tracer, pieces.all, importance, light,
+                        {options.elements, kElementNormalWeight, options.seed + 1}, Slivers::kKept, progress);
     elements = makeElements(sides, pieces, reflectance, clusters.of, clusters.size(), progress);
   }
 
@@ -204,16 +225,17 @@ struct LightPaths::Impl {
       float* row = out.data() + r * 3 * columns;
       for (const Weight& w : view.direct)
         for (std::size_t c = 0; c < 3; ++c)
-          row[c * columns + entry_of_piece[w.index]] += w.value[static_cast<int>(c)];
+          if (entry_of_piece[w.index] != scene::kNone)
+            row[c * columns + entry_of_piece[w.index]] += w.value[static_cast<int>(c)];
       weights.insert(weights.end(), view.reflected.begin(), view.reflected.end());
       first.push_back(weights.size());
     }
-    for (std::size_t block = 0; block < light->blocks(); ++block) {
+    for (std::size_t block = 0; block < reflected->blocks(); ++block) {
       const std::size_t begin = block * ElementLight::kBlock,
                         count = std::min(ElementLight::kBlock, columns - begin);
       for (std::size_t r = 0; r < of.size(); ++r) {
         const std::array<float, ElementLight::kRow> sum =
-            gather(*light, block, std::span(weights).subspan(first[r], first[r + 1] - first[r]));
+            gather(*reflected, block, std::span(weights).subspan(first[r], first[r + 1] - first[r]));
         float* row = out.data() + r * 3 * columns + begin;
         for (std::size_t c = 0; c < 3; ++c)
           for (std::size_t k = 0; k < count; ++k) row[c * columns + k] += sum[c * ElementLight::kBlock + k];
@@ -263,16 +285,17 @@ struct LightPaths::Impl {
     std::vector<Vec3> on_piece;  // [lights][pieces]
     if (by == LitBy::kEntries) {
       const std::vector<Vec3> on_entry = lightOn(lights, entry_places, options.entry_samples, progress);
-      on_piece.resize(lights.size() * pieces.size());
+      on_piece.assign(lights.size() * pieces.size(), Vec3(0.0f));
       for (std::size_t l = 0; l < lights.size(); ++l)
         for (std::size_t p = 0; p < pieces.size(); ++p)
-          on_piece[l * pieces.size() + p] = on_entry[l * entries.size() + entry_of_piece[p]];
+          if (entry_of_piece[p] != scene::kNone)
+            on_piece[l * pieces.size() + p] = on_entry[l * entries.size() + entry_of_piece[p]];
     } else {
       const std::vector<Place> places =
           placesOn(texels, sides, membersOf(pieces.of_side, pieces.size()), kPiecePlaces, options.seed + 2);
       on_piece = lightOn(lights, places, kPiecePlaces, progress);
     }
-    const ElementLight reflected(
+    const ElementLight of_lights(
         elements, lights.size(),
         [&](std::size_t block, std::span<float> radiosity) {
           const std::size_t begin = block * ElementLight::kBlock,
@@ -295,8 +318,8 @@ struct LightPaths::Impl {
           ExitView view;
           for (std::size_t x = begin; x < end; ++x) {
             exit_rays.look(gathered_from[x], view);
-            for (std::size_t block = 0; block < reflected.blocks(); ++block) {
-              const auto sum = gather(reflected, block, view.reflected);
+            for (std::size_t block = 0; block < of_lights.blocks(); ++block) {
+              const auto sum = gather(of_lights, block, view.reflected);
               const std::size_t first = block * ElementLight::kBlock;
               for (std::size_t l = first; l < std::min(first + ElementLight::kBlock, lights.size()); ++l) {
                 Vec3 e(sum[l - first], sum[ElementLight::kBlock + l - first],
@@ -321,7 +344,7 @@ struct LightPaths::Impl {
   const MeanReflectance reflectance;
   const SurfaceScene surface;
   const Sides sides;
-  const Pieces pieces;
+  Pieces pieces;
   const Patches exit_patches;
   const std::vector<std::uint32_t> gathered_from;  // by exit
   const SampleTable directions;
@@ -331,8 +354,9 @@ struct LightPaths::Impl {
   Exits exits;
   ExitTiles tiles;
   Elements elements;
-  std::unique_ptr<ElementLight> light;
+  std::unique_ptr<ElementLight> reflected;
   const ExitScene exit_scene;
+  float spacing = 0;
   std::uint64_t ray_count = 0;
 };
 
@@ -345,12 +369,11 @@ LightPaths::LightPaths(LightPaths&&) noexcept = default;
 const Entries& LightPaths::entries() const { return impl_->entries; }
 const Exits& LightPaths::exits() const { return impl_->exits; }
 const ExitTiles& LightPaths::tiles() const { return impl_->tiles; }
-float LightPaths::spacing() const {
-  return static_cast<float>(std::sqrt(impl_->pieces.area() / static_cast<double>(impl_->entries.size())));
-}
+float LightPaths::spacing() const { return impl_->spacing; }
 std::uint64_t LightPaths::bytes() const {
   const Impl& i = *impl_;
-  return i.light->bytes() + i.sides.size() * (std::uint64_t{i.sides.raysEach()} * sizeof(SideOfTexel) + 12);
+  return i.reflected->bytes() +
+         i.sides.size() * (std::uint64_t{i.sides.raysEach()} * sizeof(SideOfTexel) + 12);
 }
 std::uint64_t LightPaths::rays() const { return impl_->ray_count; }
 

@@ -9,7 +9,8 @@
 namespace relume::transport {
 
 /// Points in `boxes`, uniformly, that are neither inside bodies nor outside of the scene: most of what they
-/// see is the front of something. White lights of intensity 1. May be fewer than `count`.
+/// see is the front of something. Where there are rooms, a hall in a field say, only places in rooms count.
+/// White lights of intensity 1. May be fewer than `count`.
 LightSet findLights(const trace::Tracer& tracer, std::span<const Box3> boxes, std::uint32_t count,
                     const LightPlaces& places, std::uint64_t seed, Progress& progress);
 

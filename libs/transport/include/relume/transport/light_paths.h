@@ -25,8 +25,10 @@
 namespace relume::transport {
 
 enum class EntryPlacement : std::uint8_t {
-  kPatches,  ///< the whole surface in patches of about equal area, none behind a wall that another part faces
-  kShot,     ///< points that rays hit from where lights may be; T_e / d(e) of [USKP09] 7.1
+  /// The whole surface in patches: about equal where lights may shine, larger elsewhere; none on two sides of
+  /// a wall.
+  kPatches,
+  kShot,  ///< points that rays hit from where lights may be; T_e / d(e) of [USKP09] 7.1
 };
 
 struct LightPathOptions {
@@ -40,7 +42,7 @@ struct LightPathOptions {
   std::uint32_t tile_exits = 256;    ///< exits of a tile, on average, without overlap
   float tile_overlap = 0.3f;         ///< exits that a tile shares with its neighbours, as a share of its own
   Materials materials = Materials::kFull;
-  std::vector<Box3> light_boxes;  ///< where lights may be; none: all of the free space between surfaces
+  std::vector<Box3> light_boxes;  ///< where lights may be; none: rooms, or all free space if there are none
   std::uint64_t seed = 1;
 };
 
@@ -114,7 +116,9 @@ class LightPaths {
   const Entries& entries() const;
   const Exits& exits() const;
   const ExitTiles& tiles() const;
-  float spacing() const;        ///< metres: side of a square of an entry's mean area
+  /// Metres: side of a square of an entry's mean area, where lights shine. Lights that keep so far away from
+  /// surfaces are what entries are made for.
+  float spacing() const;
   std::uint64_t bytes() const;  ///< of memory held, about
   std::uint64_t rays() const;   ///< traced while solving
 
@@ -122,8 +126,9 @@ class LightPaths {
   /// From many threads at once; the same bits every time.
   void rows(std::size_t tile, std::span<float> out) const;
 
-  /// White point and spot lights of intensity 1 in free space, in `light_boxes` where there are any. Fewer
-  /// than `count`, perhaps none, where such places are hard to find.
+  /// White point and spot lights of intensity 1 in free space, in `light_boxes` where there are any;
+  /// otherwise in rooms, or in the open where there are no rooms. Fewer than `count`, perhaps none, where
+  /// such places are hard to find.
   LightSet lights(std::uint32_t count, const LightPlaces& places, std::uint64_t seed,
                   Progress& progress) const;
   /// Irradiance on entries with shadow rays, of lights as if their colour were 1. Shape: [lights][entries].
