@@ -106,14 +106,15 @@ bool Tracer::occluded(const Ray& ray, std::uint32_t alpha_seed) const {
   return query.tfar < 0.0f && ray.t_max >= 0.0f;
 }
 
-void Tracer::intersectPacket(const RayPacket& rays, HitPacket& hits) const {
+void Tracer::intersectPacket(const RayPacket& rays, HitPacket& hits, Bundle bundle) const {
   const FlushDenormals flush;
   alignas(64) RTCRayHit16 query;
   alignas(64) int valid[kLanes];
   const bool any = toEmbree(rays, query.ray, valid);
   std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
   std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
-  if (any) embree::intersect16(valid, impl_->accel.root(), query, embree::Coherence::kSorted);
+  const auto coherence = bundle == Bundle::kSlim ? embree::Coherence::kSorted : embree::Coherence::kNone;
+  if (any) embree::intersect16(valid, impl_->accel.root(), query, coherence);
 
   std::uint32_t hit = 0, behind = 0, double_sided = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {

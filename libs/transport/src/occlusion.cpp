@@ -19,6 +19,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bundle_guess.h"
 #include "direction_batch.h"
 #include "error_estimate.h"
 #include "group_rays.h"
@@ -68,6 +69,7 @@ class GroupSolver {
         any_hit_(options.kind == OcclusionKind::kScalar &&
                  options.weight.shape == DistanceWeight::Shape::kStep),
         rays_(tracer.scene(), texels, samples, options.seed, options.weight.limit),
+        guess_(tracer.scene()),
         values_(std::size_t{options.max_samples} * kColumns),
         back_(std::size_t{kMaxBatch} * kColumns),
         scratch_(std::size_t{std::max(kMaxBatch, options.max_samples)} * kColumns),
@@ -87,6 +89,7 @@ class GroupSolver {
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
              OcclusionResult& result) {
     rays_.begin(group);
+    guess_.begin();
     tallies_.fill(Tally());
     variance_.fill(0.0f);
     const bool adaptive = options_.target_error > 0.0f;
@@ -221,7 +224,8 @@ class GroupSolver {
 
   void traceFirstHit(std::uint32_t sample, std::uint32_t in_chunk) {
     trace::HitPacket hits;
-    tracer_.intersectPacket(packet_, hits);
+    tracer_.intersectPacket(packet_, hits, guess_.next());
+    guess_.met(hits);
     float* values = &values_[std::size_t{sample} * kColumns];
     const std::size_t base = std::size_t{in_chunk} * kColumns;
     forEachLane([&](std::uint32_t lane, std::uint32_t at) {
@@ -294,6 +298,7 @@ class GroupSolver {
   const bool any_hit_;
   Vec3 inverse_mean_albedo_{0};
   GroupRays rays_;
+  BundleGuess guess_;
   trace::RayPacket packet_;
   std::vector<float> values_;           // [max_samples][16]; negative: discarded
   std::vector<std::uint8_t> back_;      // of a chunk, as those below

@@ -26,11 +26,16 @@ class Exposure {
     return parts_[s].far_counts ? farOf(parts_[s]) : nearOf(parts_[s]);
   }
 
+  /// A wall parts the point's footprint, and a neighbour answers for the smaller side.
+  bool parted(std::uint32_t point) const {
+    const std::uint32_t s = state_[point];
+    return s < kHidden && parts_[s].beyond != scene::kNone;
+  }
+
   /// Which point answers for the end of a ray that met the front of `point`: itself, or, where a wall parts
   /// the footprint and the ray came to the smaller side, a neighbour over there.
   std::uint32_t answering(std::uint32_t point, Point origin, Point end) const {
-    const std::uint32_t s = state_[point];
-    return s >= kHidden || parts_[s].beyond == scene::kNone ? point : sideOf(point, origin, end);
+    return parted(point) ? sideOf(point, origin, end) : point;
   }
 
   /// Where a wall parts a footprint and `irradiance` (luminance, by point, of the larger parts) is far lower

@@ -11,6 +11,8 @@
 #include "direction_batch.h"
 #include "error_estimate.h"
 #include "group_solving.h"
+#include "lightmap/chunk.h"
+#include "lightmap/end_radiance.h"
 #include "lightmap/exposure.h"
 #include "lightmap/gatherer.h"
 #include "lightmap/light_rays.h"
@@ -42,19 +44,15 @@ class Estimate {
     count_ = 0, texels_ = texels;
   }
 
-  /// values: [count][16], a net in Morton order.
-  void add(std::span<const Vec3> values, std::uint32_t count) {
-    std::array<Vec3, kColumns> sum{};
-    std::array<float, kColumns> mean{};
-    grey_.resize(values.size()), scratch_.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      sum[i % kColumns] += values[i], grey_[i] = luminance(values[i]);
-    for (std::size_t c = 0; c < kColumns; ++c) mean[c] = luminance(sum[c]) / static_cast<float>(count);
-    addNetVariances(grey_, mean, scratch_, variance_);
+  void add(const Chunk& chunk, std::uint32_t count) {
+    std::array<float, kColumns> mean;
+    scratch_.resize(chunk.grey().size());
+    for (std::size_t c = 0; c < kColumns; ++c) mean[c] = luminance(chunk.sum(c)) / static_cast<float>(count);
+    addNetVariances(chunk.grey(), mean, scratch_, variance_);
     count_ += count;
     float typical = 0;
     for (std::size_t i = 0; i < texels_; ++i) {
-      sum_[i] += glm::dvec3(sum[i]);
+      sum_[i] += glm::dvec3(chunk.sum(i));
       typical += luminance(this->mean(i)) / static_cast<float>(texels_);
     }
     for (std::size_t i = 0; i < texels_; ++i)
@@ -77,7 +75,7 @@ class Estimate {
   std::array<float, kColumns> variance_, error_;
   std::uint32_t count_ = 0;
   std::size_t texels_ = 0;
-  std::vector<float> grey_, scratch_;
+  std::vector<float> scratch_;
 };
 
 /// What all groups share.
@@ -91,6 +89,7 @@ struct Shared {
   const LightTable& lights;
   const Exposure& exposure;
   const RadianceCache& cache;
+  const EndRadiance& ends;
   float mean = 0;  // of the irradiance that is solved for: luminance
 
   bool direct() const { return options.part != Part::kIndirect && !emitters.empty(); }
@@ -113,7 +112,7 @@ class GroupSolver {
              LightmapResult& result) {
     rays_.begin(group);
     light_.begin(group.size()), gathered_.begin(group.size());
-    back_.fill(BackCount());
+    backs_.clear();
     all_.resize(group.size());
     std::iota(all_.begin(), all_.end(), 0u);
     const float allowed = squaredTolerance(group);
@@ -121,7 +120,7 @@ class GroupSolver {
       sample(leastLights(options_), allowed, light_, [&](auto first, auto count) {
         light_rays_.trace(rays_, all_, first, count,
                           [&](std::uint32_t texel, std::uint32_t sample, Vec3 irradiance, float) {
-                            values_[std::size_t{sample} * kColumns + texel] += irradiance;
+                            chunk_.add(texel, sample, irradiance);
                           });
       });
     // Also for direct light alone: without a gather ray nothing tells whether a texel lies inside something.
@@ -133,7 +132,7 @@ class GroupSolver {
       const float cached = shared_.indirect() ? shared_.cache.error(group[i]) : 0.0f;
       result.error[slot] = std::hypot(light_.error(i), gathered_.error(i), cached);
       const bool dark = luminance(result.value[slot].rgb) <= kNoLight * shared_.mean;
-      result.back_share[slot] = shared_.exposure.hidden(group[i]) ? 1.0f : back_[i].share(dark);
+      result.back_share[slot] = shared_.exposure.hidden(group[i]) ? 1.0f : backs_.share(i, dark);
     }
   }
 
@@ -150,9 +149,9 @@ class GroupSolver {
       const std::uint32_t round = done > 0 ? done : adaptive ? least : options_.max_samples;
       const std::uint32_t chunk = std::min(round, kMaxBatch);
       for (std::uint32_t first = done; first < done + round; first += chunk) {
-        values_.assign(std::size_t{chunk} * kColumns, Vec3(0.0f));
+        chunk_.begin(chunk);
         trace(first, chunk);
-        estimate.add(values_, chunk);
+        estimate.add(chunk_, chunk);
       }
       done += round;
       if (adaptive && done >= enough && estimate.squaredError() < allowed) break;
@@ -162,14 +161,29 @@ class GroupSolver {
   void gather(std::uint32_t first, std::uint32_t count) {
     const bool direct = shared_.direct() && options_.part != Part::kDirect, indirect = shared_.indirect();
     rays_.select(all_, count);
-    gatherer_.trace(rays_, first, count,
-                    [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
-                      Vec3 radiance(0.0f);
-                      if (direct) radiance = arrival.emitted;
-                      if (indirect) radiance += shared_.cache.radiance(arrival.surface);
-                      values_[std::size_t{sample} * kColumns + texel] = kPi * radiance;
-                      back_[texel].add(arrival);
-                    });
+    gatherer_.tracePackets(rays_, first, count,
+                           [&](std::uint32_t s, const trace::RayPacket& packet, const trace::HitPacket& hits) {
+                             LaneColours light;
+                             if (indirect)
+                               shared_.ends.of(packet, hits, light);
+                             else
+                               light.clear();
+                             if (direct && !gatherer_.nothingSeen()) addEmitted(first + s, packet, hits, light);
+                             // Of cosine-weighted rays each stands for pi steradian.
+                             for (std::uint32_t lane = 0; lane < GroupRays::kLanes; ++lane) {
+                               const float share = packet.t_max[lane] >= 0.0f ? kPi : 0.0f;
+                               light.r[lane] *= share, light.g[lane] *= share, light.b[lane] *= share;
+                             }
+                             chunk_.add(rays_, s, light);
+                             backs_.add(rays_, packet, hits);
+                           });
+  }
+
+  void addEmitted(std::uint32_t sample, const trace::RayPacket& packet, const trace::HitPacket& hits,
+                  LaneColours& light) {
+    for (std::uint32_t lane = 0; lane < GroupRays::kLanes; ++lane)
+      if (packet.t_max[lane] >= 0.0f)
+        light.add(lane, gatherer_.emitted(rays_, sample, packet, hits, lane));
   }
 
   /// Mean square of what a texel's error may be: half of it for direct light, half for gathered.
@@ -193,9 +207,9 @@ class GroupSolver {
   Gatherer gatherer_;
   LightRays light_rays_;
   std::vector<std::uint32_t> all_;  // places in the group
-  std::vector<Vec3> values_;
+  Chunk chunk_;
   Estimate light_, gathered_;
-  std::array<BackCount, kGroupTexels> back_{};
+  BackCounts backs_;
 };
 
 }  // namespace
@@ -249,8 +263,9 @@ struct LightmapSolver::Impl {
       sum += weight * static_cast<double>(luminance(own)), area += weight;
     }
     mean = area > 0 ? static_cast<float>(sum / area) : 0.0f;
+    ends = std::make_unique<EndRadiance>(lookup, *exposure, *cache);
     shared.emplace(
-        Shared{tracer, texels, options, emitters, lookup, directions, lights, *exposure, *cache, mean});
+        Shared{tracer, texels, options, emitters, lookup, directions, lights, *exposure, *cache, *ends, mean});
   }
 
   const trace::Tracer& tracer;
@@ -264,6 +279,7 @@ struct LightmapSolver::Impl {
   const LightTable lights;
   std::unique_ptr<Exposure> exposure;
   std::unique_ptr<RadianceCache> cache;
+  std::unique_ptr<EndRadiance> ends;
   float mean = 0;
   std::optional<Shared> shared;  // of what stands above; made with the cache
   SolverPool<GroupSolver> gatherers;

@@ -77,17 +77,17 @@ void PathGroup::solve(std::span<const std::uint32_t> group, std::span<const std:
   }
   std::vector<std::uint32_t> all(group.size());
   std::iota(all.begin(), all.end(), 0u);
-  std::array<BackCount, kGroupTexels> back{};
+  BackCounts backs;
   rays_.select(all, back_rays_);
-  gatherer_.trace(rays_, 0, back_rays_, [&](std::uint32_t texel, std::uint32_t, const Arrival& arrival) {
-    back[texel].add(arrival);
-  });
+  gatherer_.tracePackets(
+      rays_, 0, back_rays_,
+      [&](std::uint32_t, const trace::RayPacket& packet, const trace::HitPacket& hits) { backs.add(rays_, packet, hits); });
   for (std::size_t i = 0; i < group.size(); ++i) {
     if (slots[i] == scene::kNone) continue;
     result.value[slots[i]] = Irradiance(sums_[i].mean());
     result.error[slots[i]] = sums_[i].error();
     const bool dark = sums_[i].mean() == Vec3(0.0f);
-    result.back_share[slots[i]] = exposure_.hidden(group[i]) ? 1.0f : back[i].share(dark);
+    result.back_share[slots[i]] = exposure_.hidden(group[i]) ? 1.0f : backs.share(i, dark);
   }
 }
 

@@ -112,21 +112,20 @@ struct RadianceCache::Builder {
                                  r.glossy() ? ggx::reflected(cosine, GlossTable::alphaOf(r.roughness))
                                             : ggx::Reflected{0, 0});
                        });
-    std::array<BackCount, kGroupTexels> met{};
+    BackCounts backs;
     w.rays.select(w.active, n);
     const float ray_share = kPi / static_cast<float>(n);
-    w.gatherer.trace(w.rays, 0, n, [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
+    w.gatherer.trace(w.rays, 0, n, backs, [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
       const std::uint32_t slot = slots[texel];
       if (arrival.emitted != Vec3(0.0f))
         arrived(slot, arrival.emitted * ray_share, glossOf(found, slot, sample));
       found.ends[std::size_t{slot} * n + sample] = arrival.surface;
-      met[texel].add(arrival);
     });
     for (std::size_t i = 0; i < group.size(); ++i) {
-      const float share = static_cast<float>(met[i].backs) / static_cast<float>(n);
+      const float share = static_cast<float>(backs.backs(i)) / static_cast<float>(n);
       if (side == Side::kFront) cache.back_share_[group[i]] = exposure.hidden(group[i]) ? 1.0f : share;
       // What is inside a body sees backs that nobody else does; no light finds it either.
-      if (met[i].behind > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
+      if (backs.behind(i) > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
         want(slots[i], found);
     }
   }

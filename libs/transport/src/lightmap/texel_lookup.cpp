@@ -8,17 +8,19 @@
 namespace relume::transport {
 
 TexelLookup::TexelLookup(const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::Texels& texels)
-    : width_(texels.width), height_(texels.height), uses_(scene.instances.size()) {
+    : width_(texels.width), height_(texels.height), first_(scene.instances.size(), scene::kNone) {
   std::size_t count = 0;
   for (const atlas::InstanceUv& uv : atlas.instances) count += uv.triangles.size();
   triangles_.reserve(count);
   for (const atlas::InstanceUv& uv : atlas.instances) {
-    uses_[uv.instance] = {static_cast<std::uint32_t>(triangles_.size()), uv.page};
-    for (const UVec3 t : uv.triangles) triangles_.push_back({uv.uv[t.x], uv.uv[t.y], uv.uv[t.z]});
+    first_[uv.instance] = static_cast<std::uint32_t>(triangles_.size());
+    const auto page = uv.page * static_cast<std::uint32_t>(width_ * height_);
+    for (const UVec3 t : uv.triangles)
+      triangles_.push_back({uv.uv[t.x], uv.uv[t.y] - uv.uv[t.x], uv.uv[t.z] - uv.uv[t.x], page});
   }
 
   const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
-  point_of_.assign(texels.pages * width * height, scene::kNone);
+  point_of_.assign(texels.pages * width * height + 1, scene::kNone);
   for (std::uint32_t i = 0; i < texels.points.size(); ++i) point_of_[texels.points[i].texel] = i;
   for (std::uint32_t i = 0; i < texels.points.size(); ++i) {
     const std::size_t texel = texels.points[i].texel, x = texel % width, y = texel / width % height;
@@ -29,16 +31,22 @@ TexelLookup::TexelLookup(const scene::Scene& scene, const atlas::Atlas& atlas, c
   }
 }
 
-std::uint32_t TexelLookup::point(const scene::Hit& hit) const {
-  const Use& use = uses_[hit.instance];
-  if (use.first == scene::kNone) return scene::kNone;
-  const auto& [a, b, c] = triangles_[use.first + hit.triangle];
-  const Vec2 place = a + hit.b1 * (b - a) + hit.b2 * (c - a);
+inline std::uint32_t TexelLookup::texel(const scene::Hit& hit) const {
+  const std::uint32_t first = first_[hit.instance];
+  if (first == scene::kNone) return nowhere();
+  const Triangle& t = triangles_[first + hit.triangle];
+  const Vec2 place = t.corner + hit.b1 * t.edge1 + hit.b2 * t.edge2;
   const int x = std::clamp(static_cast<int>(place.x), 0, width_ - 1),
             y = std::clamp(static_cast<int>(place.y), 0, height_ - 1);
-  const std::size_t row =
-      static_cast<std::size_t>(use.page) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y);
-  return point_of_[row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  return t.page + static_cast<std::uint32_t>(y * width_ + x);
+}
+
+std::uint32_t TexelLookup::point(const scene::Hit& hit) const { return point_of_[texel(hit)]; }
+
+void TexelLookup::texels(const trace::HitPacket& hits,
+                         std::array<std::uint32_t, trace::RayPacket::kSize>& texel_of) const {
+  for (std::uint32_t lane = 0; lane < texel_of.size(); ++lane)
+    texel_of[lane] = ((hits.hit >> lane) & 1u) != 0 ? texel(hits.where(lane)) : nowhere();
 }
 
 }  // namespace relume::transport

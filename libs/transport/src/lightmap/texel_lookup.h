@@ -7,6 +7,7 @@
 
 #include "relume/atlas/atlas.h"
 #include "relume/atlas/texels.h"
+#include "relume/trace/tracer.h"
 
 namespace relume::transport {
 
@@ -17,16 +18,27 @@ class TexelLookup {
   /// Index into Texels::points; scene::kNone where the surface has no texel (degenerate triangles).
   std::uint32_t point(const scene::Hit& hit) const;
 
+  /// Texels of all pages, and one more that stands for no texel at all.
+  std::size_t texels() const { return point_of_.size(); }
+  std::uint32_t pointOf(std::uint32_t texel) const { return point_of_[texel]; }
+
+  /// By lane: the texel where its ray ends; the one that stands for none where it does not.
+  void texels(const trace::HitPacket& hits, std::array<std::uint32_t, trace::RayPacket::kSize>& texel) const;
+
  private:
-  struct Use {
-    std::uint32_t first = scene::kNone;  ///< its triangle 0 in triangles_
-    std::uint32_t page = 0;
+  /// In the texels of its page; a cache line holds two.
+  struct alignas(32) Triangle {
+    Vec2 corner, edge1, edge2;
+    std::uint32_t page = 0;  ///< its first texel
   };
 
+  std::uint32_t nowhere() const { return static_cast<std::uint32_t>(point_of_.size() - 1); }
+  std::uint32_t texel(const scene::Hit& hit) const;
+
   int width_, height_;
-  std::vector<Use> uses_;                       ///< by instance
-  std::vector<std::array<Vec2, 3>> triangles_;  ///< corners in texels of the page
-  std::vector<std::uint32_t> point_of_;         ///< by texel of all pages
+  std::vector<std::uint32_t> first_;     ///< by instance: its triangle 0 in triangles_; scene::kNone: no texels
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> point_of_;  ///< by texel
 };
 
 }  // namespace relume::transport

@@ -28,13 +28,13 @@ class Worker {
                         result.irradiance[group[texel]] += irradiance * (1.0f / kLightSamples);
                       });
     rays_.select(active_, kGatherSamples);
-    gatherer_.trace(rays_, 0, kGatherSamples,
+    BackCounts backs;
+    gatherer_.trace(rays_, 0, kGatherSamples, backs,
                     [&](std::uint32_t texel, std::uint32_t, const Arrival& arrival) {
-                      const std::uint32_t point = group[texel];
-                      result.irradiance[point] += arrival.emitted * (kPi / kGatherSamples);
-                      if (arrival.surface != kNoTexel && (arrival.surface & kBackBit) != 0)
-                        result.back_share[point] += 1.0f / kGatherSamples;
+                      result.irradiance[group[texel]] += arrival.emitted * (kPi / kGatherSamples);
                     });
+    for (std::size_t i = 0; i < group.size(); ++i)
+      result.back_share[group[i]] = static_cast<float>(backs.behind(i)) / kGatherSamples;
   }
 
  private:

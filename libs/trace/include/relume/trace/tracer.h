@@ -52,6 +52,11 @@ struct alignas(64) HitPacket {
   scene::Hit where(std::size_t lane) const { return {instance[lane], triangle[lane], b1[lane], b2[lane]}; }
 };
 
+/// How the rays of a packet lie, which decides how their first hits are found: those of a slim bundle together,
+/// those of a wide one, which meet many triangles, one by one. The hits may differ in their last bits, so
+/// nothing that varies between runs may decide.
+enum class Bundle : std::uint8_t { kSlim, kWide };
+
 struct TracerOptions {
   std::string
       isa;  ///< "", "sse2", "avx", "avx2", "avx512": which kernels Embree uses (bits may differ between them)
@@ -88,7 +93,7 @@ class Tracer {
                       std::span<bool> occluded) const;
 
   /// The same without a detour through Ray and RayHit.
-  void intersectPacket(const RayPacket& rays, HitPacket& hits) const;
+  void intersectPacket(const RayPacket& rays, HitPacket& hits, Bundle bundle = Bundle::kSlim) const;
   /// Bit i: something lies on the ray of lane i.
   std::uint32_t occludedPacket(const RayPacket& rays) const;
 

@@ -72,6 +72,8 @@ class Emitters {
   /// Whether rays that hit this instance may see light there; whether rays may see light elsewhere (onRay).
   bool emits(std::uint32_t instance) const;
   bool seenBesideSurfaces() const;
+  /// Whether such light can stand before a surface that a ray hits.
+  bool seenBeforeSurfaces() const;
 
   /// Light of one kind at p from the side of n (unit; zero: from all around). u, choice in [0, 1). Visibility
   /// is left to the caller. All light is the sum of both kinds.
