@@ -8,32 +8,12 @@
 
 #include "accel.h"
 #include "relume/core/check.h"
-#if defined(__SSE2__)
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-#endif
+#include "relume/trace/flush_denormals.h"
 
 namespace relume::trace {
 namespace {
 
 constexpr std::size_t kLanes = RayPacket::kSize;
-
-/// Flushes denormals while it lives, as Embree recommends.
-class FlushDenormals {
- public:
-#if defined(__SSE2__)
-  FlushDenormals() : saved_(_mm_getcsr()) {
-    if ((saved_ & kFlush) != kFlush) _mm_setcsr(saved_ | kFlush);
-  }
-  ~FlushDenormals() {
-    if ((saved_ & kFlush) != kFlush) _mm_setcsr(saved_);
-  }
-
- private:
-  static constexpr unsigned int kFlush = _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON;
-  unsigned int saved_;
-#endif
-};
 
 RTCRay toEmbree(const Ray& ray, std::uint32_t alpha_seed) {
   RTCRay r;

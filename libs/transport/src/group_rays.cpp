@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "relume/core/check.h"
 #include "relume/core/sampling.h"
@@ -131,26 +130,8 @@ void GroupRays::select(std::span<const std::uint32_t> active, std::uint32_t most
   }
 }
 
-void GroupRays::packet(std::uint32_t first, trace::RayPacket& packet) const {
+void GroupRays::fill(const SampleRows& sample, std::uint32_t first, trace::RayPacket& __restrict rays) const {
   const Lanes& l = lanes_;
-  const std::uint32_t base = first * SampleTable::kColumns;
-  const float *xs = samples_.x.data() + base, *ys = samples_.y.data() + base, *zs = samples_.z.data() + base,
-              *us = samples_.u.data() + base, *vs = samples_.v.data() + base;
-  struct alignas(64) Samples {
-    float x[kLanes], y[kLanes], z[kLanes], u[kLanes], v[kLanes];
-  } sample;
-  if (in_order_) {
-    constexpr std::size_t kRow = kLanes * sizeof(float);
-    std::memcpy(sample.x, xs, kRow), std::memcpy(sample.y, ys, kRow), std::memcpy(sample.z, zs, kRow);
-    std::memcpy(sample.u, us, kRow), std::memcpy(sample.v, vs, kRow);
-  } else {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const std::uint32_t at = l.at[i];
-      sample.x[i] = xs[at], sample.y[i] = ys[at], sample.z[i] = zs[at];
-      sample.u[i] = us[at], sample.v[i] = vs[at];
-    }
-  }
-  trace::RayPacket rays;  // of its own: what nothing else can point to becomes vector code
   for (std::uint32_t i = 0; i < kLanes; ++i) {
     const float x = sample.x[i], y = sample.y[i], z = sample.z[i], u = sample.u[i] - 0.5f,
                 v = sample.v[i] - 0.5f, limit = l.limit[i];
@@ -164,7 +145,26 @@ void GroupRays::packet(std::uint32_t first, trace::RayPacket& packet) const {
     rays.t_max[i] = cosine > RayFrame::kGrazing ? limit : -1.0f;
     rays.alpha_seed[i] = l.alpha[i] + first;
   }
-  packet = rays;
+}
+
+void GroupRays::packet(std::uint32_t first, trace::RayPacket& packet) const {
+  const Lanes& l = lanes_;
+  const std::uint32_t base = first * SampleTable::kColumns;
+  const float *xs = samples_.x.data() + base, *ys = samples_.y.data() + base, *zs = samples_.z.data() + base,
+              *us = samples_.u.data() + base, *vs = samples_.v.data() + base;
+  if (in_order_) {
+    fill({xs, ys, zs, us, vs}, first, packet);
+  } else {
+    struct alignas(64) {
+      float x[kLanes], y[kLanes], z[kLanes], u[kLanes], v[kLanes];
+    } sample;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const std::uint32_t at = l.at[i];
+      sample.x[i] = xs[at], sample.y[i] = ys[at], sample.z[i] = zs[at];
+      sample.u[i] = us[at], sample.v[i] = vs[at];
+    }
+    fill({sample.x, sample.y, sample.z, sample.u, sample.v}, first, packet);
+  }
   for (const std::uint32_t i : uneven_) {
     const Source& s = sources_[texel_[i]];
     const std::uint32_t at = l.at[i];

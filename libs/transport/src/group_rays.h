@@ -117,8 +117,15 @@ class GroupRays {
     std::uint32_t alpha[kLanes];
   };
 
+  /// Samples of the lanes of a packet.
+  struct SampleRows {
+    const float *x, *y, *z, *u, *v;
+  };
+
   void turn(const atlas::SurfacePoint& point);
   void prepare(std::uint32_t index, Side side, Source& source) const;
+  /// `rays` and `sample` share no memory: what is sure of that becomes vector code.
+  void fill(const SampleRows& sample, std::uint32_t first, trace::RayPacket& rays) const;
 
   const scene::Scene& scene_;
   const atlas::Texels& texels_;

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
 // What the rays of a packet bring from where they end.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "lightmap/radiance_cache.h"
 #include "lightmap/side_of_texel.h"
+#include "relume/core/quantity.h"
 
 namespace relume::transport {
 
-/// A colour for each lane of a packet.
-struct alignas(64) LaneColours {
-  float r[trace::RayPacket::kSize], g[trace::RayPacket::kSize], b[trace::RayPacket::kSize];
-
-  void clear() { *this = {}; }
-  void add(std::uint32_t lane, Vec3 rgb) { r[lane] += rgb.x, g[lane] += rgb.y, b[lane] += rgb.z; }
-};
+/// Light as (red, green, blue, luminance), by lane of a packet or by texel of a group.
+using LightLanes = std::array<Vec4, trace::RayPacket::kSize>;
+inline Vec4 withLuminance(Vec3 rgb) { return {rgb, luminance(rgb)}; }
 
 /// The radiance cache once more, by texel of the atlas instead of by point, which spares every ray a look-up.
 class EndRadiance {
@@ -23,13 +21,13 @@ class EndRadiance {
   EndRadiance(const TexelLookup& lookup, const Exposure& exposure, const RadianceCache& cache);
 
   /// Radiance by lane; black where a ray ends nowhere.
-  void of(const trace::RayPacket& rays, const trace::HitPacket& hits, LaneColours& radiance) const;
+  void of(const trace::RayPacket& rays, const trace::HitPacket& hits, LightLanes& radiance) const;
 
  private:
   const TexelLookup& lookup_;
   const Exposure& exposure_;
   const RadianceCache& cache_;
-  /// By texel, that for none too: RGB; w is 1 where it depends on more than the texel.
+  /// By texel, that for none too. A luminance below 0: it depends on more than the texel.
   std::vector<Vec4> texels_;
 };
 

@@ -10,6 +10,7 @@
 #include "group_rays.h"
 #include "lightmap/side_of_texel.h"
 #include "power_heuristic.h"
+#include "relume/trace/flush_denormals.h"
 #include "relume/transport/emitters.h"
 
 namespace relume::transport {
@@ -74,6 +75,7 @@ class Gatherer {
   void tracePackets(const GroupRays& rays, std::uint32_t first, std::uint32_t count, const Visit& visit) {
     trace::RayPacket packet;
     trace::HitPacket hits;
+    const trace::FlushDenormals flush;
     if (first == 0) guess_.begin();
     for (std::uint32_t s = 0; s < count; s += rays.samplesPerPacket()) {
       rays.packet(first + s, packet);

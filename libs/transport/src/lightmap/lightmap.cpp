@@ -39,7 +39,9 @@ std::uint32_t leastLights(const LightmapOptions& options) { return std::max(opti
 /// The means of the samples of a group's texels, round by round, and how far they may be off.
 class Estimate {
  public:
-  void begin(std::size_t texels) {
+  /// `unit`: what a sample of 1 stands for.
+  void begin(std::size_t texels, float unit) {
+    unit_ = unit;
     sum_.fill(glm::dvec3(0)), variance_.fill(0.0f), error_.fill(0.0f);
     count_ = 0, texels_ = texels;
   }
@@ -47,7 +49,7 @@ class Estimate {
   void add(const Chunk& chunk, std::uint32_t count) {
     std::array<float, kColumns> mean;
     scratch_.resize(chunk.grey().size());
-    for (std::size_t c = 0; c < kColumns; ++c) mean[c] = luminance(chunk.sum(c)) / static_cast<float>(count);
+    for (std::size_t c = 0; c < kColumns; ++c) mean[c] = chunk.greySum(c) / static_cast<float>(count);
     addNetVariances(chunk.grey(), mean, scratch_, variance_);
     count_ += count;
     float typical = 0;
@@ -56,11 +58,11 @@ class Estimate {
       typical += luminance(this->mean(i)) / static_cast<float>(texels_);
     }
     for (std::size_t i = 0; i < texels_; ++i)
-      error_[i] = radianceStandardError(variance_[i], count_, typical);
+      error_[i] = radianceStandardError(unit_ * unit_ * variance_[i], count_, typical);
   }
 
   Vec3 mean(std::size_t i) const {
-    return count_ > 0 ? Vec3(sum_[i] / static_cast<double>(count_)) : Vec3(0.0f);
+    return count_ > 0 ? unit_ * Vec3(sum_[i] / static_cast<double>(count_)) : Vec3(0.0f);
   }
   float error(std::size_t i) const { return error_[i]; }
   /// Mean square of the errors.
@@ -73,6 +75,7 @@ class Estimate {
  private:
   std::array<glm::dvec3, kColumns> sum_;
   std::array<float, kColumns> variance_, error_;
+  float unit_ = 1.0f;
   std::uint32_t count_ = 0;
   std::size_t texels_ = 0;
   std::vector<float> scratch_;
@@ -111,7 +114,8 @@ class GroupSolver {
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
              LightmapResult& result) {
     rays_.begin(group);
-    light_.begin(group.size()), gathered_.begin(group.size());
+    light_.begin(group.size(), 1.0f);
+    gathered_.begin(group.size(), kPi);  // of cosine-weighted rays each stands for pi steradian
     backs_.clear();
     all_.resize(group.size());
     std::iota(all_.begin(), all_.end(), 0u);
@@ -163,27 +167,22 @@ class GroupSolver {
     rays_.select(all_, count);
     gatherer_.tracePackets(rays_, first, count,
                            [&](std::uint32_t s, const trace::RayPacket& packet, const trace::HitPacket& hits) {
-                             LaneColours light;
+                             LightLanes light;
                              if (indirect)
                                shared_.ends.of(packet, hits, light);
                              else
-                               light.clear();
+                               light.fill(Vec4(0.0f));
                              if (direct && !gatherer_.nothingSeen()) addEmitted(first + s, packet, hits, light);
-                             // Of cosine-weighted rays each stands for pi steradian.
-                             for (std::uint32_t lane = 0; lane < GroupRays::kLanes; ++lane) {
-                               const float share = packet.t_max[lane] >= 0.0f ? kPi : 0.0f;
-                               light.r[lane] *= share, light.g[lane] *= share, light.b[lane] *= share;
-                             }
                              chunk_.add(rays_, s, light);
                              backs_.add(rays_, packet, hits);
                            });
   }
 
   void addEmitted(std::uint32_t sample, const trace::RayPacket& packet, const trace::HitPacket& hits,
-                  LaneColours& light) {
+                  LightLanes& light) {
     for (std::uint32_t lane = 0; lane < GroupRays::kLanes; ++lane)
       if (packet.t_max[lane] >= 0.0f)
-        light.add(lane, gatherer_.emitted(rays_, sample, packet, hits, lane));
+        light[lane] += withLuminance(gatherer_.emitted(rays_, sample, packet, hits, lane));
   }
 
   /// Mean square of what a texel's error may be: half of it for direct light, half for gathered.

@@ -43,8 +43,7 @@ inline std::uint32_t TexelLookup::texel(const scene::Hit& hit) const {
 
 std::uint32_t TexelLookup::point(const scene::Hit& hit) const { return point_of_[texel(hit)]; }
 
-void TexelLookup::texels(const trace::HitPacket& hits,
-                         std::array<std::uint32_t, trace::RayPacket::kSize>& texel_of) const {
+void TexelLookup::texels(const trace::HitPacket& hits, LaneTexels& texel_of) const {
   for (std::uint32_t lane = 0; lane < texel_of.size(); ++lane)
     texel_of[lane] = ((hits.hit >> lane) & 1u) != 0 ? texel(hits.where(lane)) : nowhere();
 }

@@ -11,6 +11,8 @@
 
 namespace relume::transport {
 
+using LaneTexels = std::array<std::uint32_t, trace::RayPacket::kSize>;
+
 class TexelLookup {
  public:
   TexelLookup(const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::Texels& texels);
@@ -23,7 +25,7 @@ class TexelLookup {
   std::uint32_t pointOf(std::uint32_t texel) const { return point_of_[texel]; }
 
   /// By lane: the texel where its ray ends; the one that stands for none where it does not.
-  void texels(const trace::HitPacket& hits, std::array<std::uint32_t, trace::RayPacket::kSize>& texel) const;
+  void texels(const trace::HitPacket& hits, LaneTexels& texel) const;
 
  private:
   /// In the texels of its page; a cache line holds two.
