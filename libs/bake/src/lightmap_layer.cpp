@@ -78,7 +78,7 @@ void addLights(const scene::Scene& scene, Hasher& hasher) {
 Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
   Hasher hasher;
   hasher
-      .add("lightmap 2")  // raise when the solver's results change
+      .add("lightmap 3")  // raise when the solver's results change
       .add(o.method)
       .add(o.part)
       .add(o.materials)

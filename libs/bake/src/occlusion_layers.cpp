@@ -58,7 +58,7 @@ Albedo roundedMeanAlbedo(const atlas::Texels& texels) {
 
 Digest keyOf(const OcclusionOptions& o, const RowLayout& layout) {
   return Hasher()
-      .add("occlusion 4")  // raise when the solver's results change
+      .add("occlusion 5")  // raise when the solver's results change
       .add(o.kind)
       .add(o.weight.shape)
       .add(o.weight.tau)

@@ -49,9 +49,16 @@ Bsdf Bsdf::metallicRoughness(Normal shading_normal, const scene::Surface& surfac
   const Vec3 body = (1 - metallic) * (Vec3(1.0f) - albedo(Vec3(kDielectric))) * base;
   bsdf.diffuse_ = body * (1 - transmission);
   bsdf.transmittance_ = body * transmission;
+  bsdf.glossy_albedo_ = specular;
   const float s = luminance(specular), d = luminance(bsdf.diffuse_);
   bsdf.choose_specular_ = d > 0 ? std::clamp(s / (s + d), 0.1f, 0.9f) : 1.0f;
   return bsdf;
+}
+
+Bsdf Bsdf::glossy() const {
+  Bsdf lobes = *this;
+  lobes.diffuse_ = Vec3(0.0f), lobes.choose_specular_ = 1.0f;
+  return lobes;
 }
 
 Vec3 Bsdf::evaluate(Direction incoming) const {

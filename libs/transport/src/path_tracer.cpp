@@ -28,28 +28,6 @@ const scene::Material& PathTracer::materialOf(const scene::Hit& hit) const {
   return scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material];
 }
 
-PathTracer::Vertex PathTracer::vertexAt(const scene::Hit& hit, Direction outgoing) const {
-  const scene::Material& material = materialOf(hit);
-  Vertex vertex;
-  vertex.position = scene::worldPosition(scene_, hit);
-  vertex.geometric = scene::geometricNormal(scene_, hit.instance, hit.triangle);
-  if (material.unlit || vertex.geometric == Normal(0)) return vertex;
-  const bool full = options_.materials == Materials::kFull;
-  Normal shading = full ? scene::mappedNormal(scene_, hit) : scene::shadingNormal(scene_, hit);
-  if (glm::dot(vertex.geometric, outgoing) < 0) vertex.geometric = -vertex.geometric, shading = -shading;
-  const scene::Surface surface = scene::surfaceAt(scene_, hit);
-  if (full) {
-    shading = validShadingNormal(shading, vertex.geometric, outgoing);
-    vertex.bsdf = Bsdf::metallicRoughness(shading, surface, material.transmission, outgoing);
-    vertex.transmittance = vertex.bsdf.transmittance();
-  } else {
-    const Vec3 albedo = surface.albedo().rgb;
-    vertex.bsdf = Bsdf::lambert(shading, albedo * (1 - material.transmission));
-    vertex.transmittance = albedo * material.transmission;
-  }
-  return vertex;
-}
-
 Vec3 PathTracer::visibility(const Vertex& vertex, const LightSample& light, std::uint32_t alpha_seed) const {
   trace::Ray ray{trace::offsetOrigin(vertex.position, vertex.geometric), light.direction, kInfinity};
   if (!light.endless) {
@@ -64,7 +42,7 @@ Vec3 PathTracer::visibility(const Vertex& vertex, const LightSample& light, std:
     const trace::RayHit hit = tracer_.intersect(ray, alpha_seed);
     if (!hit) return passed;
     if (!(materialOf(hit.where).transmission > 0)) return Vec3(0.0f);
-    const Vertex pane = vertexAt(hit.where, -ray.direction);
+    const Vertex pane = vertexAt(scene_, hit.where, -ray.direction, options_.materials);
     passed *= pane.transmittance;
     if (passed == Vec3(0)) return passed;
     ray.origin = trace::offsetOrigin(pane.position, -pane.geometric);
@@ -107,7 +85,7 @@ PathTracer::Arrival PathTracer::follow(Point from, Normal side, trace::Ray ray, 
     for (const LightSeen& light : seen_) emitted(light, arrival.throughput);
     if (!hit) return arrival;
     travelled += hit.t;
-    arrival.vertex = vertexAt(hit.where, -ray.direction);
+    arrival.vertex = vertexAt(scene_, hit.where, -ray.direction, options_.materials);
     const LightSeen light =
         emitters_.onSurface(from, side, ray.direction, hit.where, travelled, hit.back_face);
     if (light.radiance.rgb != Vec3(0)) emitted(light, arrival.throughput);

@@ -5,9 +5,9 @@
 
 #include "path_sampler.h"
 #include "relume/trace/tracer.h"
-#include "relume/transport/bsdf.h"
 #include "relume/transport/emitters.h"
 #include "relume/transport/reference.h"
+#include "vertex.h"
 
 namespace relume::transport {
 
@@ -22,13 +22,6 @@ class PathTracer {
   Vec3 irradiance(const Receiver& receiver, PathSampler& sampler);
 
  private:
-  /// A place where light is reflected.
-  struct Vertex {
-    Point position;
-    Normal geometric;  ///< on the outgoing direction's side
-    Bsdf bsdf = Bsdf::lambert({0, 0, 1}, Vec3(0));
-    Vec3 transmittance{0.0f};  ///< of light that goes straight through
-  };
   /// Where a ray ends.
   struct Arrival {
     bool hit = false;
@@ -37,7 +30,6 @@ class PathTracer {
   };
 
   const scene::Material& materialOf(const scene::Hit& hit) const;
-  Vertex vertexAt(const scene::Hit& hit, Direction outgoing) const;
   /// Light that reaches `start` and is reflected there.
   Vec3 reflected(Vertex start, PathSampler& sampler);
   Vec3 sampledLight(const Vertex& vertex, PathSampler& sampler);

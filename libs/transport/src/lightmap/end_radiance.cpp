@@ -14,15 +14,19 @@ constexpr Vec4 kToBeAsked(0.0f, 0.0f, 0.0f, -1.0f);
 
 EndRadiance::EndRadiance(const TexelLookup& lookup, const Exposure& exposure, const RadianceCache& cache)
     : lookup_(lookup), exposure_(exposure), cache_(cache), texels_(lookup.texels(), Vec4(0.0f)) {
+  if (cache.anyWalks()) walk_chance_.assign(lookup.texels(), 0);
   parallelFor(texels_.size(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (const std::uint32_t point = lookup.pointOf(static_cast<std::uint32_t>(i)); point != scene::kNone)
-        texels_[i] = exposure.parted(point) ? kToBeAsked : withLuminance(cache.radiance(point));
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t point = lookup.pointOf(static_cast<std::uint32_t>(i));
+      if (point == scene::kNone) continue;
+      texels_[i] = exposure.parted(point) ? kToBeAsked : withLuminance(cache.radiance(point));
+      if (!walk_chance_.empty()) walk_chance_[i] = static_cast<std::uint8_t>(cache.walkChance(point));
+    }
   });
 }
 
-void EndRadiance::of(const trace::RayPacket& rays, const trace::HitPacket& hits,
-                     LightLanes& radiance) const {
+std::uint32_t EndRadiance::of(const trace::RayPacket& rays, const trace::HitPacket& hits,
+                              LightLanes& radiance) const {
   constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
   LaneTexels texel;
   lookup_.texels(hits, texel);
@@ -34,6 +38,14 @@ void EndRadiance::of(const trace::RayPacket& rays, const trace::HitPacket& hits,
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(asked));
     radiance[lane] = withLuminance(cache_.radiance(endOf(rays, hits, lane, lookup_, &exposure_)));
   }
+  std::uint32_t walks = 0;
+  if (walk_chance_.empty()) return walks;
+  // The golden ratio spreads the chances of a texel's samples, whose seeds are consecutive.
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+    walks |=
+        static_cast<std::uint32_t>((rays.alpha_seed[lane] * 0x9e3779b1u) >> 24 < walk_chance_[texel[lane]])
+        << lane;
+  return walks;
 }
 
 }  // namespace relume::transport

@@ -20,8 +20,13 @@ class EndRadiance {
   /// Keeps references.
   EndRadiance(const TexelLookup& lookup, const Exposure& exposure, const RadianceCache& cache);
 
-  /// Radiance by lane; black where a ray ends nowhere.
-  void of(const trace::RayPacket& rays, const trace::HitPacket& hits, LightLanes& radiance) const;
+  /// Radiance by lane; black where a ray ends nowhere. Returns lanes whose ends send glossy light too, which
+  /// is to be followed: bit i for lane i, by chance.
+  std::uint32_t of(const trace::RayPacket& rays, const trace::HitPacket& hits, LightLanes& radiance) const;
+  /// One over that chance.
+  float perWalk(const scene::Hit& hit) const {
+    return 256.0f / static_cast<float>(cache_.walkChance(lookup_.point(hit)));
+  }
 
  private:
   const TexelLookup& lookup_;
@@ -29,6 +34,7 @@ class EndRadiance {
   const RadianceCache& cache_;
   /// By texel, that for none too. A luminance below 0: it depends on more than the texel.
   std::vector<Vec4> texels_;
+  std::vector<std::uint8_t> walk_chance_;  ///< by texel, that for none too; or empty
 };
 
 }  // namespace relume::transport

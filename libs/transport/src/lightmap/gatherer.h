@@ -17,6 +17,8 @@ namespace relume::transport {
 
 struct Arrival {
   SideOfTexel surface = kNoTexel;  ///< where the ray ends
+  scene::Hit hit;                  ///< the same, where that is a texel
+  Direction direction{0, 0, 1};    ///< of the ray
   /// Radiance straight from emitters, weighted against LightRays, which could have found them too
   /// (power_heuristic.h).
   Vec3 emitted{0.0f};
@@ -109,7 +111,8 @@ class Gatherer {
                const trace::HitPacket& hits, std::uint32_t lane) {
     Vec3 sum(0.0f);
     const bool hit = ((hits.hit >> lane) & 1u) != 0;
-    if (hit && emitters_.emits(hits.instance[lane])) addSurface(rays.normals(first, lane), packet, hits, lane, sum);
+    if (hit && emitters_.emits(hits.instance[lane]))
+      addSurface(rays.normals(first, lane), packet, hits, lane, sum);
     if (hit ? before_ : beside_)
       addBeside(rays.normals(first, lane), packet, hit ? hits.t[lane] : kInfinity, lane, sum);
     return sum;
@@ -123,7 +126,11 @@ class Gatherer {
   Arrival arrival(const GroupRays& rays, std::uint32_t first, const trace::RayPacket& packet,
                   const trace::HitPacket& hits, std::uint32_t lane) {
     Arrival result;
-    if (((hits.hit >> lane) & 1u) != 0) result.surface = endOf(packet, hits, lane, lookup_, exposure_);
+    result.direction = {packet.direction_x[lane], packet.direction_y[lane], packet.direction_z[lane]};
+    if (((hits.hit >> lane) & 1u) != 0) {
+      result.surface = endOf(packet, hits, lane, lookup_, exposure_);
+      result.hit = hits.where(lane);
+    }
     result.emitted = emitted(rays, first, packet, hits, lane);
     return result;
   }

@@ -15,6 +15,7 @@
 #include "lightmap/end_radiance.h"
 #include "lightmap/exposure.h"
 #include "lightmap/gatherer.h"
+#include "lightmap/glossy_walk.h"
 #include "lightmap/light_rays.h"
 #include "lightmap/path_group.h"
 #include "lightmap/radiance_cache.h"
@@ -107,9 +108,10 @@ class GroupSolver {
         rays_(shared.tracer.scene(), shared.texels, shared.directions, options_.seed, kInfinity,
               Alignment::kTurned, &shared.exposure),
         gatherer_(shared.tracer, shared.lookup, shared.emitters, &shared.exposure),
-        light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect) {}
+        light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect),
+        walk_(shared.tracer, shared.lookup, shared.exposure, shared.emitters) {}
 
-  std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays(); }
+  std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays() + walk_.rays(); }
 
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
              LightmapResult& result) {
@@ -165,17 +167,32 @@ class GroupSolver {
   void gather(std::uint32_t first, std::uint32_t count) {
     const bool direct = shared_.direct() && options_.part != Part::kDirect, indirect = shared_.indirect();
     rays_.select(all_, count);
-    gatherer_.tracePackets(rays_, first, count,
-                           [&](std::uint32_t s, const trace::RayPacket& packet, const trace::HitPacket& hits) {
-                             LightLanes light;
-                             if (indirect)
-                               shared_.ends.of(packet, hits, light);
-                             else
-                               light.fill(Vec4(0.0f));
-                             if (direct && !gatherer_.nothingSeen()) addEmitted(first + s, packet, hits, light);
-                             chunk_.add(rays_, s, light);
-                             backs_.add(rays_, packet, hits);
-                           });
+    gatherer_.tracePackets(
+        rays_, first, count,
+        [&](std::uint32_t s, const trace::RayPacket& packet, const trace::HitPacket& hits) {
+          LightLanes light;
+          if (indirect)
+            addWalks(first + s, packet, hits, shared_.ends.of(packet, hits, light), light);
+          else
+            light.fill(Vec4(0.0f));
+          if (direct && !gatherer_.nothingSeen()) addEmitted(first + s, packet, hits, light);
+          chunk_.add(rays_, s, light);
+          backs_.add(rays_, packet, hits);
+        });
+  }
+
+  /// What glossy surfaces send on where the rays of these lanes end.
+  void addWalks(std::uint32_t first, const trace::RayPacket& packet, const trace::HitPacket& hits,
+                std::uint32_t lanes, LightLanes& light) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      PathSampler sampler(options_.seed, rays_.alphaStream(rays_.texelOf(lane)), 2,
+                          first + rays_.sampleOf(lane));
+      const Direction d(packet.direction_x[lane], packet.direction_y[lane], packet.direction_z[lane]);
+      Vec3 sum = walk_.follow(hits.where(lane), -d, sampler, walk_ends_);
+      for (const GlossyWalk::End& end : walk_ends_) sum += end.share * shared_.cache.radiance(end.surface);
+      light[lane] += withLuminance(shared_.ends.perWalk(hits.where(lane)) * sum);
+    }
   }
 
   void addEmitted(std::uint32_t sample, const trace::RayPacket& packet, const trace::HitPacket& hits,
@@ -205,6 +222,8 @@ class GroupSolver {
   GroupRays rays_;
   Gatherer gatherer_;
   LightRays light_rays_;
+  GlossyWalk walk_;
+  std::vector<GlossyWalk::End> walk_ends_;
   std::vector<std::uint32_t> all_;  // places in the group
   Chunk chunk_;
   Estimate light_, gathered_;
@@ -263,8 +282,8 @@ struct LightmapSolver::Impl {
     }
     mean = area > 0 ? static_cast<float>(sum / area) : 0.0f;
     ends = std::make_unique<EndRadiance>(lookup, *exposure, *cache);
-    shared.emplace(
-        Shared{tracer, texels, options, emitters, lookup, directions, lights, *exposure, *cache, *ends, mean});
+    shared.emplace(Shared{tracer, texels, options, emitters, lookup, directions, lights, *exposure, *cache,
+                          *ends, mean});
   }
 
   const trace::Tracer& tracer;

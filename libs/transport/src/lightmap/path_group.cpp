@@ -79,9 +79,10 @@ void PathGroup::solve(std::span<const std::uint32_t> group, std::span<const std:
   std::iota(all.begin(), all.end(), 0u);
   BackCounts backs;
   rays_.select(all, back_rays_);
-  gatherer_.tracePackets(
-      rays_, 0, back_rays_,
-      [&](std::uint32_t, const trace::RayPacket& packet, const trace::HitPacket& hits) { backs.add(rays_, packet, hits); });
+  gatherer_.tracePackets(rays_, 0, back_rays_,
+                         [&](std::uint32_t, const trace::RayPacket& packet, const trace::HitPacket& hits) {
+                           backs.add(rays_, packet, hits);
+                         });
   for (std::size_t i = 0; i < group.size(); ++i) {
     if (slots[i] == scene::kNone) continue;
     result.value[slots[i]] = Irradiance(sums_[i].mean());

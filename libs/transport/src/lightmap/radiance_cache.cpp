@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
+#include "lightmap/glossy_walk.h"
 #include "lightmap/light_rays.h"
 #include "lightmap/reflectance.h"
 #include "lightmap/substitutes.h"
@@ -27,6 +29,13 @@ double sumOf(std::span<const Vec4> values) {
 }  // namespace
 
 struct RadianceCache::Builder {
+  /// A surface that an entry's rays find in glossy ones.
+  struct Mirrored {
+    std::uint32_t entry;
+    SideOfTexel surface;
+    Vec3 share;  // of a gather ray
+  };
+
   /// What was found from one side of the surfaces.
   struct Found {
     std::vector<Vec3> direct;       // E, by entry
@@ -34,10 +43,13 @@ struct RadianceCache::Builder {
     std::vector<SideOfTexel> ends;  // [entry][gather_samples]
     std::vector<Reflectance> reflectance;
     std::vector<std::uint8_t> column;  // of the sample table
+    std::vector<Vec3> mirrored;        // E from emitters that are seen in glossy surfaces, by entry
+    std::vector<Mirrored> ends_of_walks;
+    std::vector<std::size_t> first_walk;  // by entry and one more: in ends_of_walks
 
     std::size_t size() const { return reflectance.size(); }
     void resize(std::size_t entries, std::uint32_t samples) {
-      direct.resize(entries), glossy.resize(entries), column.resize(entries);
+      direct.resize(entries), glossy.resize(entries), column.resize(entries), mirrored.resize(entries);
       ends.resize(entries * samples, kNoTexel);
     }
   };
@@ -61,6 +73,7 @@ struct RadianceCache::Builder {
   void build() {
     const std::size_t points = texels.points.size();
     front.reflectance = reflectances(tracer.scene(), texels, options.materials);
+    prepareWalks();
     cache.back_share_.resize(points);
     front.resize(points, options.gather_samples);
     wanted.assign(points, 0);
@@ -71,6 +84,7 @@ struct RadianceCache::Builder {
     nothing = static_cast<std::uint32_t>(points + back.size());
     std::replace(cache.back_of_.begin(), cache.back_of_.end(), scene::kNone, nothing);
     const std::vector<std::uint32_t> substitute = substitutes(texels, buried);
+    sortWalks(front), sortWalks(back);
     place(front, substitute), place(back, substitute);
     handOn();
     for (std::size_t i = 0; i < points; ++i) cache.radiance_[i] = now[substitute[i]];
@@ -84,16 +98,61 @@ struct RadianceCache::Builder {
         : rays(b.tracer.scene(), b.texels, b.directions, b.options.seed, kInfinity, Alignment::kTurned,
                &b.exposure),
           gatherer(b.tracer, b.lookup, b.emitters, &b.exposure),
-          light_rays(b.tracer, b.emitters, b.lights, false) {}
+          light_rays(b.tracer, b.emitters, b.lights, false),
+          walk(b.tracer, b.lookup, b.exposure, b.emitters) {}
+    std::uint64_t traced() const { return gatherer.rays() + light_rays.rays() + walk.rays(); }
     GroupRays rays;
     Gatherer gatherer;
     LightRays light_rays;
+    GlossyWalk walk;
     std::vector<std::uint32_t> active;
+    std::vector<GlossyWalk::End> ends;
+    std::vector<Mirrored> mirrored;
   };
+
+  /// With any number of bounces, what glossy lobes send is followed from each ray that meets them; bounces
+  /// that are counted would need the light of each apart.
+  void prepareWalks() {
+    if (options.materials != Materials::kFull || options.bounces >= 0) return;
+    const auto glossy = [](const Reflectance& r) { return r.glossiness > 0; };
+    if (std::none_of(front.reflectance.begin(), front.reflectance.end(), glossy)) return;
+    cache.walk_chance_.resize(front.reflectance.size());
+    for (std::size_t i = 0; i < front.reflectance.size(); ++i) {
+      Reflectance& r = front.reflectance[i];
+      if (glossy(r))
+        cache.walk_chance_[i] =
+            static_cast<std::uint8_t>(std::clamp(std::lround(256 * r.glossiness), 1l, 255l));
+      r.scale = r.bias = Vec3(0.0f);
+    }
+  }
+
+  /// Follows what the glossy surface sends on that a ray of an entry has met, by chance.
+  void walk(Worker& w, std::uint32_t slot, std::uint32_t point, Side side, std::uint32_t sample,
+            const Arrival& arrival, Found& found) {
+    if (!cache.anyWalks() || arrival.surface == kNoTexel) return;
+    const std::uint32_t chance = cache.walkChance(lookup.point(arrival.hit));
+    if (chance == 0) return;
+    PathSampler sampler(options.seed, texels.points[point].texel, side == Side::kFront ? 0 : 1, sample);
+    if (!(sampler.pair().x * 256 < static_cast<float>(chance))) return;
+    const float weight = 256.0f / static_cast<float>(chance);
+    const Vec3 seen = w.walk.follow(arrival.hit, -arrival.direction, sampler, w.ends);
+    found.mirrored[slot] += (kPi / static_cast<float>(options.gather_samples) * weight) * seen;
+    for (const GlossyWalk::End& end : w.ends) w.mirrored.push_back({slot, end.surface, weight * end.share});
+  }
+
+  /// From one list for each place of the parallel loop to one in the order of the entries.
+  static void sortWalks(Found& found) {
+    found.first_walk.assign(found.size() + 1, 0);
+    for (const Mirrored& m : found.ends_of_walks) ++found.first_walk[m.entry + 1];
+    std::partial_sum(found.first_walk.begin(), found.first_walk.end(), found.first_walk.begin());
+    std::stable_sort(found.ends_of_walks.begin(), found.ends_of_walks.end(),
+                     [](const Mirrored& a, const Mirrored& b) { return a.entry < b.entry; });
+  }
 
   void gatherGroup(Worker& w, std::span<const std::uint32_t> group, Side side,
                    std::span<const std::uint32_t> slots, Found& found) {
     const std::uint32_t n = options.gather_samples;
+    const std::size_t walks_before = w.mirrored.size();
     w.rays.begin(group, side);
     w.active.resize(group.size());
     for (std::uint32_t i = 0; i < group.size(); ++i) w.active[i] = i;
@@ -115,12 +174,14 @@ struct RadianceCache::Builder {
     BackCounts backs;
     w.rays.select(w.active, n);
     const float ray_share = kPi / static_cast<float>(n);
-    w.gatherer.trace(w.rays, 0, n, backs, [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
-      const std::uint32_t slot = slots[texel];
-      if (arrival.emitted != Vec3(0.0f))
-        arrived(slot, arrival.emitted * ray_share, glossOf(found, slot, sample));
-      found.ends[std::size_t{slot} * n + sample] = arrival.surface;
-    });
+    w.gatherer.trace(w.rays, 0, n, backs,
+                     [&](std::uint32_t texel, std::uint32_t sample, const Arrival& arrival) {
+                       const std::uint32_t slot = slots[texel];
+                       if (arrival.emitted != Vec3(0.0f))
+                         arrived(slot, arrival.emitted * ray_share, glossOf(found, slot, sample));
+                       found.ends[std::size_t{slot} * n + sample] = arrival.surface;
+                       walk(w, slot, group[texel], side, sample, arrival, found);
+                     });
     for (std::size_t i = 0; i < group.size(); ++i) {
       const float share = static_cast<float>(backs.backs(i)) / static_cast<float>(n);
       if (side == Side::kFront) cache.back_share_[group[i]] = exposure.hidden(group[i]) ? 1.0f : share;
@@ -128,34 +189,42 @@ struct RadianceCache::Builder {
       if (backs.behind(i) > 0 && (share <= kBuriedShare || found.direct[slots[i]] != Vec3(0.0f)))
         want(slots[i], found);
     }
+    for (std::size_t i = walks_before; i < w.mirrored.size(); ++i) want(w.mirrored[i].surface);
+  }
+
+  /// Marks a surface that a ray has met, if it is a back.
+  void want(SideOfTexel end) {
+    if (end == kNoTexel || (end & kBackBit) == 0) return;
+    std::atomic_ref<std::uint8_t>(wanted[end & ~kBackBit]).store(1, std::memory_order_relaxed);
   }
 
   /// Marks the backs that an entry's rays have met.
   void want(std::size_t slot, const Found& found) {
-    for (std::uint32_t s = 0; s < options.gather_samples; ++s) {
-      const SideOfTexel end = found.ends[slot * options.gather_samples + s];
-      if (end == kNoTexel || (end & kBackBit) == 0) continue;
-      std::atomic_ref<std::uint8_t>(wanted[end & ~kBackBit]).store(1, std::memory_order_relaxed);
-    }
+    for (std::uint32_t s = 0; s < options.gather_samples; ++s)
+      want(found.ends[slot * options.gather_samples + s]);
   }
 
   void gatherFronts() {
     const Stage stage(progress, "bounces", texels.points.size());
     std::vector<std::uint64_t> rays(groups.tiles());
+    std::vector<std::vector<Mirrored>> walks(groups.tiles());
     parallelFor(groups.tiles(), 4, [&](std::size_t begin, std::size_t end) {
       Worker worker(*this);
       for (std::size_t tile = begin; tile < end; ++tile) {
-        const std::uint64_t before = worker.gatherer.rays() + worker.light_rays.rays();
+        const std::uint64_t before = worker.traced();
         groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
           if (progress.cancelled()) return;
           gatherGroup(worker, group, Side::kFront, group, front);
           progress.advance(group.size());
         });
-        rays[tile] = worker.gatherer.rays() + worker.light_rays.rays() - before;
+        rays[tile] = worker.traced() - before;
+        walks[tile].swap(worker.mirrored);
       }
     });
     progress.throwIfCancelled();
     for (const std::uint64_t r : rays) cache.rays_ += r;
+    for (const auto& list : walks)
+      front.ends_of_walks.insert(front.ends_of_walks.end(), list.begin(), list.end());
   }
 
   /// Backs that rays have met, then those that the rays from these meet, until there are no new ones.
@@ -186,18 +255,22 @@ struct RadianceCache::Builder {
       if (blocks.empty()) return;
       back.resize(next, options.gather_samples);
       std::vector<std::uint64_t> rays(blocks.size());
+      std::vector<std::vector<Mirrored>> walks(blocks.size());
       parallelFor(
           blocks.size(), 64,
           [&](std::size_t begin, std::size_t end) {
             Worker worker(*this);
             for (std::size_t b = begin; b < end; ++b) {
-              const std::uint64_t before = worker.gatherer.rays() + worker.light_rays.rays();
+              const std::uint64_t before = worker.traced();
               gatherGroup(worker, blocks[b].points, Side::kBack, blocks[b].slots, back);
-              rays[b] = worker.gatherer.rays() + worker.light_rays.rays() - before;
+              rays[b] = worker.traced() - before;
+              walks[b].swap(worker.mirrored);
             }
           },
           &progress);
       for (const std::uint64_t r : rays) cache.rays_ += r;
+      for (const auto& list : walks)
+        back.ends_of_walks.insert(back.ends_of_walks.end(), list.begin(), list.end());
     }
   }
 
@@ -210,17 +283,15 @@ struct RadianceCache::Builder {
 
   /// Ends of rays become places in `now`.
   void place(Found& found, const std::vector<std::uint32_t>& substitute) const {
+    const auto placeOf = [&](SideOfTexel surface) {
+      if ((surface & kBackBit) == 0) return substitute[surface];
+      const bool known = surface != kNoTexel && !cache.back_of_.empty();
+      return known ? cache.back_of_[surface & ~kBackBit] : nothing;
+    };
     parallelFor(found.ends.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const SideOfTexel surface = found.ends[i];
-        if ((surface & kBackBit) == 0) {
-          found.ends[i] = substitute[surface];
-        } else {
-          const bool known = surface != kNoTexel && !cache.back_of_.empty();
-          found.ends[i] = known ? cache.back_of_[surface & ~kBackBit] : nothing;
-        }
-      }
+      for (std::size_t i = begin; i < end; ++i) found.ends[i] = placeOf(found.ends[i]);
     });
+    for (Mirrored& m : found.ends_of_walks) m.surface = placeOf(m.surface);
   }
 
   /// Light of the bounce before that an entry's rays find; what then leaves the entry.
@@ -240,9 +311,12 @@ struct RadianceCache::Builder {
       }
       glossy = Vec4(r.scale, 0) * scaled + Vec4(r.bias, 0) * biased;
     }
+    for (std::size_t i = found.first_walk[entry]; i < found.first_walk[entry + 1]; ++i)
+      sum += Vec4(found.ends_of_walks[i].share, 0) * now[found.ends_of_walks[i].surface];
     const float per_ray = kPi / static_cast<float>(n);
-    if (indirect) *indirect = Vec3(sum) * per_ray;
-    return kInvPi * (Vec4(r.diffuse, 0) * (Vec4(r.direct * found.direct[entry], 0) + per_ray * sum) +
+    const Vec4 arriving = per_ray * sum + Vec4(found.mirrored[entry], 0);
+    if (indirect) *indirect = Vec3(arriving);
+    return kInvPi * (Vec4(r.diffuse, 0) * (Vec4(r.direct * found.direct[entry], 0) + arriving) +
                      Vec4(found.glossy[entry], 0) + per_ray * glossy);
   }
 
@@ -266,7 +340,8 @@ struct RadianceCache::Builder {
     });
     const int most = options.bounces < 0 ? kMostBounces : options.bounces;
     double total = sumOf(now), change = total;
-    for (int k = 0; k < most && total > 0; ++k) {
+    // Light of emitters may come by glossy surfaces alone.
+    for (int k = 0; k < most && (total > 0 || (k == 0 && cache.anyWalks())); ++k) {
       forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
         next[place] = reflect(found, entry, &found == &front ? &cache.indirect_[entry] : nullptr);
       });

@@ -50,12 +50,19 @@ class RadianceCache {
                 const atlas::Texels& texels, const TexelGroups& groups, const Exposure& exposure,
                 const CacheOptions& options, Progress& progress);
 
-  /// Radiance that leaves the surface at the end of a ray, the same in all directions.
+  /// Radiance that leaves the surface at the end of a ray, the same in all directions. But for walkChance.
   Vec3 radiance(SideOfTexel surface) const {
     if ((surface & kBackBit) == 0) return radiance_[surface];
     if (surface == kNoTexel || back_of_.empty()) return Vec3(0.0f);
     return radiance_[back_of_[surface & ~kBackBit]];
   }
+
+  /// Where what glossy lobes send is followed ray by ray (glossy_walk.h) and not part of radiance(): the
+  /// chance in 256 with which a ray that ends at a point ought to be. Always 0: radiance() has all of it.
+  std::uint32_t walkChance(std::uint32_t point) const {
+    return walk_chance_.empty() ? 0 : walk_chance_[point];
+  }
+  bool anyWalks() const { return !walk_chance_.empty(); }
 
   /// An estimate of E at the front of a point, without what comes straight from emitters, and of that; noisy.
   const Vec3& indirect(std::uint32_t point) const { return indirect_[point]; }
@@ -74,7 +81,8 @@ class RadianceCache {
   std::vector<std::uint32_t> back_of_;  ///< by point: place in radiance_; empty: there are no backs
   std::vector<Vec3> direct_, indirect_;
   std::vector<float> back_share_;
-  std::vector<float> error_;  ///< by point, or empty
+  std::vector<float> error_;               ///< by point, or empty
+  std::vector<std::uint8_t> walk_chance_;  ///< by point, or empty
   std::uint64_t rays_ = 0;
 };
 

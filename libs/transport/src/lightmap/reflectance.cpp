@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "relume/core/parallel.h"
+#include "relume/core/quantity.h"
 
 namespace relume::transport {
 namespace {
@@ -79,6 +80,7 @@ std::vector<Reflectance> reflectances(const scene::Scene& scene, const atlas::Te
       r.diffuse *= Vec3(1.0f) - mean.albedo(coat);
       r.scale = (1.0f - m) * mean.compensation(coat) * coat + m * mean.compensation(metal) * metal;
       r.bias = (1.0f - m) * mean.compensation(coat) + m * mean.compensation(metal);
+      r.glossiness = luminance(r.scale * mean.scale + r.bias * mean.bias);
       if (!material.normal_texture) continue;
       const float c =
           std::clamp(glm::dot(scene::mappedNormal(scene, hit), scene::shadingNormal(scene, hit)), 0.0f, 1.0f);

@@ -18,6 +18,8 @@ struct Reflectance {
   Vec3 diffuse{0.0f}, scale{0.0f}, bias{0.0f};
   float direct = 1.0f;         ///< factor more for light straight from emitters: see reflectances()
   std::uint8_t roughness = 0;  ///< index for GlossTable
+  /// Luminance of what glossy lobes reflect of light from all sides.
+  float glossiness = 0.0f;
   bool glossy() const { return scale != Vec3(0.0f) || bias != Vec3(0.0f); }
 };
 

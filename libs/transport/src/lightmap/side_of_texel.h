@@ -13,17 +13,22 @@ namespace relume::transport {
 using SideOfTexel = std::uint32_t;
 inline constexpr SideOfTexel kBackBit = 0x80000000u, kNoTexel = 0xffffffffu;
 
-/// Where the ray of a lane ends that hit something. Without `exposure` every texel answers for all of its
-/// footprint.
+/// Where a ray ends that hit something. Without `exposure` every texel answers for all of its footprint.
+inline SideOfTexel endOf(const scene::Hit& hit, bool behind, Point origin, Point end,
+                         const TexelLookup& lookup, const Exposure* exposure) {
+  const std::uint32_t point = lookup.point(hit);
+  if (point == scene::kNone) return kNoTexel;
+  if (behind) return point | kBackBit;
+  return exposure ? exposure->answering(point, origin, end) : point;
+}
+
+/// The same for the ray of a lane.
 inline SideOfTexel endOf(const trace::RayPacket& rays, const trace::HitPacket& hits, std::uint32_t lane,
                          const TexelLookup& lookup, const Exposure* exposure) {
-  const std::uint32_t point = lookup.point(hits.where(lane));
-  if (point == scene::kNone) return kNoTexel;
-  if (((hits.behind >> lane) & 1u) != 0) return point | kBackBit;
-  if (!exposure) return point;
   const Point origin(rays.origin_x[lane], rays.origin_y[lane], rays.origin_z[lane]);
   const Direction d(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
-  return exposure->answering(point, origin, origin + hits.t[lane] * d);
+  return endOf(hits.where(lane), ((hits.behind >> lane) & 1u) != 0, origin, origin + hits.t[lane] * d, lookup,
+               exposure);
 }
 
 }  // namespace relume::transport

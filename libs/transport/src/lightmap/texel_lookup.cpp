@@ -21,6 +21,7 @@ TexelLookup::TexelLookup(const scene::Scene& scene, const atlas::Atlas& atlas, c
 
   const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
   point_of_.assign(texels.pages * width * height + 1, scene::kNone);
+  nothing_ = {Vec2(0.0f), Vec2(0.0f), Vec2(0.0f), nowhere()};
   for (std::uint32_t i = 0; i < texels.points.size(); ++i) point_of_[texels.points[i].texel] = i;
   for (std::uint32_t i = 0; i < texels.points.size(); ++i) {
     const std::size_t texel = texels.points[i].texel, x = texel % width, y = texel / width % height;
@@ -44,8 +45,28 @@ inline std::uint32_t TexelLookup::texel(const scene::Hit& hit) const {
 std::uint32_t TexelLookup::point(const scene::Hit& hit) const { return point_of_[texel(hit)]; }
 
 void TexelLookup::texels(const trace::HitPacket& hits, LaneTexels& texel_of) const {
-  for (std::uint32_t lane = 0; lane < texel_of.size(); ++lane)
-    texel_of[lane] = ((hits.hit >> lane) & 1u) != 0 ? texel(hits.where(lane)) : nowhere();
+  constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
+  std::array<const Triangle*, kLanes> triangle;
+  std::array<float, kLanes> b1, b2;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const bool hit = ((hits.hit >> lane) & 1u) != 0;
+    const std::uint32_t first = first_[hit ? hits.instance[lane] : 0];
+    triangle[lane] = hit && first != scene::kNone ? &triangles_[first + hits.triangle[lane]] : &nothing_;
+    b1[lane] = hit ? hits.b1[lane] : 0.0f, b2[lane] = hit ? hits.b2[lane] : 0.0f;
+  }
+  std::array<float, kLanes> x, y;
+  std::array<std::uint32_t, kLanes> page;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const Triangle& t = *triangle[lane];
+    x[lane] = t.corner.x + b1[lane] * t.edge1.x + b2[lane] * t.edge2.x;
+    y[lane] = t.corner.y + b1[lane] * t.edge1.y + b2[lane] * t.edge2.y;
+    page[lane] = t.page;
+  }
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const int column = std::clamp(static_cast<int>(x[lane]), 0, width_ - 1),
+              row = std::clamp(static_cast<int>(y[lane]), 0, height_ - 1);
+    texel_of[lane] = page[lane] + static_cast<std::uint32_t>(row * width_ + column);
+  }
 }
 
 }  // namespace relume::transport

@@ -38,8 +38,9 @@ class TexelLookup {
   std::uint32_t texel(const scene::Hit& hit) const;
 
   int width_, height_;
-  std::vector<std::uint32_t> first_;     ///< by instance: its triangle 0 in triangles_; scene::kNone: no texels
+  std::vector<std::uint32_t> first_;  ///< by instance: its triangle 0 in triangles_; scene::kNone: no texels
   std::vector<Triangle> triangles_;
+  Triangle nothing_;                     ///< all of it lies in the texel that stands for none
   std::vector<std::uint32_t> point_of_;  ///< by texel
 };
 

@@ -52,9 +52,9 @@ struct alignas(64) HitPacket {
   scene::Hit where(std::size_t lane) const { return {instance[lane], triangle[lane], b1[lane], b2[lane]}; }
 };
 
-/// How the rays of a packet lie, which decides how their first hits are found: those of a slim bundle together,
-/// those of a wide one, which meet many triangles, one by one. The hits may differ in their last bits, so
-/// nothing that varies between runs may decide.
+/// How the rays of a packet lie, which decides how their first hits are found: those of a slim bundle
+/// together, those of a wide one, which meet many triangles, one by one. The hits may differ in their last
+/// bits, so nothing that varies between runs may decide.
 enum class Bundle : std::uint8_t { kSlim, kWide };
 
 struct TracerOptions {

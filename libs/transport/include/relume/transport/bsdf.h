@@ -43,6 +43,12 @@ class Bsdf {
   /// u, lobe in [0, 1).
   BsdfSample sample(Vec2 u, float lobe) const;
 
+  /// The same without its diffuse lobe.
+  Bsdf glossy() const;
+  /// Share of light that the specular lobes reflect towards the outgoing direction, were it to come from all
+  /// sides alike.
+  Vec3 glossyAlbedo() const { return glossy_albedo_; }
+
   /// Share of light that passes straight through a thin surface of KHR_materials_transmission: what the
   /// specular lobe leaves, times base colour (1 - metallic) transmission. The pane's roughness does not blur
   /// what is behind it.
@@ -61,6 +67,7 @@ class Bsdf {
   float alpha_ = 1.0f;
   // Fresnel's term with its compensation: at normal incidence, and what Schlick's weight adds.
   Vec3 at_normal_{0.0f}, towards_grazing_{0.0f};
+  Vec3 glossy_albedo_{0.0f};
   float choose_specular_ = 0.0f;  // probability
   Vec3 transmittance_{0.0f};
 };

@@ -7,10 +7,11 @@
 // surface there sends out (radiance cache: all bounces, found once for the whole atlas). Direct light is
 // sampled at the emitters; what gather rays meet of them by chance is combined with that. What holds: the
 // conventions of reference.h; values are means over a texel's footprint, or, where other bodies stand in it,
-// over the largest part that can be seen. What differs from the reference:
-// light leaves surfaces as from an ideal diffuse reflector, with the energy that the material's lobes have
-// (Materials::kFull), and as the mean over a texel. Limits: static surfaces only; light that passes thin
-// transmission is not tinted.
+// over the largest part that can be seen. With Materials::kFull and any number of bounces, rays that end on
+// glossy surfaces go on by chance as the lobes mirror them. What differs from the reference: what surfaces
+// send out diffusely is the mean over a texel, the diffuse lobe under its coat the mean over outgoing
+// directions; with a number of bounces, and in kRadiosity, glossy lobes send their energy out diffusely too.
+// Limits: static surfaces only; light that passes thin transmission is not tinted.
 #pragma once
 #include <cstdint>
 #include <memory>
