@@ -48,6 +48,8 @@ Vec3 GlossyWalk::follow(const scene::Hit& hit, Direction outgoing, PathSampler& 
     const Vertex vertex = vertexAt(tracer_.scene(), where, outgoing, Materials::kFull);
     if (reflection > 0) {
       ends.push_back({endOf(where, vertex.behind, origin, vertex.position, lookup_, &exposure_), share});
+      const std::uint32_t point = lookup_.point(where);
+      if (point == scene::kNone || cache_.walkChance(point) == 0) break;
       const float survival = std::clamp(luminance(vertex.bsdf.glossyAlbedo()), kLeastSurvival, kMostSurvival);
       if (!(sampler.pair().x < survival)) break;
       share /= survival;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lightmap/side_of_texel.h"
+#include "lightmap/radiance_cache.h"
 #include "path_sampler.h"
 #include "relume/transport/emitters.h"
 #include "vertex.h"
@@ -21,12 +21,12 @@ class GlossyWalk {
 
   /// Keeps references.
   GlossyWalk(const trace::Tracer& tracer, const TexelLookup& lookup, const Exposure& exposure,
-             const Emitters& emitters)
-      : tracer_(tracer), lookup_(lookup), exposure_(exposure), emitters_(emitters) {}
+             const Emitters& emitters, const RadianceCache& cache)
+      : tracer_(tracer), lookup_(lookup), exposure_(exposure), emitters_(emitters), cache_(cache) {}
 
   /// One sample of the radiance that the glossy lobes at `hit` send along `outgoing` (unit): what is
-  /// returned, of emitters, and the sum over `ends`. Light of emitters by sampling them and by chance,
-  /// combined.
+  /// returned, of emitters, and the sum over `ends`. It goes on from surfaces whose glossy lobes are not part
+  /// of what the cache knows. Light of emitters by sampling them and by chance, combined.
   Vec3 follow(const scene::Hit& hit, Direction outgoing, PathSampler& sampler, std::vector<End>& ends);
 
   std::uint64_t rays() const { return traced_; }
@@ -38,6 +38,7 @@ class GlossyWalk {
   const TexelLookup& lookup_;
   const Exposure& exposure_;
   const Emitters& emitters_;
+  const RadianceCache& cache_;
   std::vector<LightSeen> seen_;
   std::uint64_t traced_ = 0;
 };

@@ -109,7 +109,7 @@ class GroupSolver {
               Alignment::kTurned, &shared.exposure),
         gatherer_(shared.tracer, shared.lookup, shared.emitters, &shared.exposure),
         light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect),
-        walk_(shared.tracer, shared.lookup, shared.exposure, shared.emitters) {}
+        walk_(shared.tracer, shared.lookup, shared.exposure, shared.emitters, shared.cache) {}
 
   std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays() + walk_.rays(); }
 
