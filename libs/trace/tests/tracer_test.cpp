@@ -312,6 +312,17 @@ TEST(Tracer, PacketsAgreeWithSingleRays) {
     }
     tracer.intersectPacket(rays, seeds, hits);
     tracer.occludedPacket(rays, seeds, blocked);
+    RayPacket lanes{};
+    std::fill(std::begin(lanes.t_max), std::end(lanes.t_max), -1.0f);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto& [origin, direction, t_max] = rays[i];
+      lanes.origin_x[i] = origin.x, lanes.origin_y[i] = origin.y, lanes.origin_z[i] = origin.z;
+      lanes.direction_x[i] = direction.x, lanes.direction_y[i] = direction.y;
+      lanes.direction_z[i] = direction.z, lanes.t_max[i] = t_max;
+    }
+    HitPacket wide;
+    tracer.intersectPacket(lanes, wide, Bundle::kWide);
+    EXPECT_EQ((wide.hit >> 7) & 1u, 0u);
     EXPECT_FALSE(hits[7]);
     EXPECT_FALSE(blocked[7]);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -322,6 +333,11 @@ TEST(Tracer, PacketsAgreeWithSingleRays) {
                    single.where.instance != hits[i].where.instance ||
                    (single && std::abs(single.t - hits[i].t) > 1e-4f * single.t) ||
                    single.back_face != hits[i].back_face || tracer.occluded(rays[i]) != blocked[i];
+      const bool met = ((wide.hit >> i) & 1u) != 0;
+      different += met != static_cast<bool>(single) ||
+                   (met && (wide.instance[i] != single.where.instance ||
+                            std::abs(single.t - wide.t[i]) > 1e-4f * single.t ||
+                            (((wide.back_face >> i) & 1u) != 0) != single.back_face));
     }
   }
   EXPECT_LE(different, rays_total / 1000);
@@ -351,6 +367,8 @@ TEST(Alpha, BlendPassesRaysInProportion) {
         HitPacket hits;
         tracer.intersectPacket(packet, hits);
         in_packets += __builtin_popcount(hits.hit);
+        differences += hits.hit != tracer.occludedPacket(packet);
+        tracer.intersectPacket(packet, hits, Bundle::kWide);
         differences += hits.hit != tracer.occludedPacket(packet);
       }
     }

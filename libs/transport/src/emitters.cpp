@@ -252,7 +252,7 @@ bool Emitters::seenBesideSurfaces() const {
          std::any_of(impl_->suns.begin(), impl_->suns.end(), sized);
 }
 
-bool Emitters::seenBeforeSurfaces() const { return !impl_->disks.empty(); }
+bool Emitters::seenBeforeSurfaces() const { return !impl_->shapes.empty(); }
 
 LightSample Emitters::sample(Reach reach, Point p, Normal n, Vec2 u, float choice) const {
   LightSample s;

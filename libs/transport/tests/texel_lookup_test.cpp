@@ -28,6 +28,9 @@ TEST(TexelLookup, EveryPlaceOfEverySurfaceHasItsTexel) {
   const Room room(64);
   const TexelLookup lookup(room.scene, room.atlas, room.texels);
   int places = 0;
+  trace::HitPacket packet{};
+  packet.hit = 0x7fff;  // all but the last lane
+  LaneTexels texels;
   for (std::uint32_t instance = 0; instance < room.scene.instances.size(); ++instance) {
     const scene::Mesh& mesh = room.scene.meshes[room.scene.instances[instance].mesh];
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -37,6 +40,11 @@ TEST(TexelLookup, EveryPlaceOfEverySurfaceHasItsTexel) {
         const scene::Hit hit{instance, t, u.x, u.y};
         const std::uint32_t point = lookup.point(hit);
         ASSERT_NE(point, scene::kNone);
+        const std::uint32_t lane = i % 16;
+        packet.instance[lane] = hit.instance, packet.triangle[lane] = t;
+        packet.b1[lane] = u.x, packet.b2[lane] = u.y;
+        lookup.texels(packet, texels);
+        EXPECT_EQ(lookup.pointOf(texels[lane]), lane == 15 ? scene::kNone : point);
         const atlas::SurfacePoint& p = room.texels.points[point];
         EXPECT_EQ(p.instance, instance);
         // The texel's own place is at most a diagonal away.
