@@ -49,11 +49,14 @@ void addSizes(Json& description, const nlohmann::json& document) {
   const auto& layers = document.at("extensions").at("RELUME_transfer").at("layers");
   for (std::size_t i = 0; i < layers.size(); ++i) {
     std::uint64_t bytes = 0;
-    for (const auto& plane : layers[i].at("planes"))
-      bytes += document.at("bufferViews")
-                   .at(plane.at("bufferView").get<std::size_t>())
-                   .at("byteLength")
-                   .get<std::uint64_t>();
+    for (const char* arrays : {"planes", "tables"}) {
+      if (!layers[i].contains(arrays)) continue;
+      for (const auto& array : layers[i].at(arrays))
+        bytes += document.at("bufferViews")
+                     .at(array.at("bufferView").get<std::size_t>())
+                     .at("byteLength")
+                     .get<std::uint64_t>();
+    }
     description["layers"][i]["bytes"] = bytes;
   }
 }

@@ -11,6 +11,7 @@
 #include "files.h"
 #include "lights.h"
 #include "reference_picture.h"
+#include "relit.h"
 #include "relume/core/file.h"
 #include "relume/image/colour.h"
 #include "relume/image/io.h"
@@ -20,13 +21,14 @@ namespace relume::app {
 namespace {
 
 using picture::View;
-constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,        View::kLightmap,
-                               View::kAlbedo,     View::kNormal,    View::kBentNormal, View::kTexels,
-                               View::kCharts,     View::kValidity};
+constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit,    View::kLightmap,
+                               View::kRelit,      View::kIndirect,  View::kAlbedo, View::kNormal,
+                               View::kBentNormal, View::kTexels,    View::kCharts, View::kValidity};
 
 struct RenderOptions {
   std::string input, output, mode, view, layer, lights, ambient, background = "0.05", tone = "auto";
   std::string eye, target, size = "960x540", renderer = "cpu", materials = "full";
+  std::vector<std::string> gains;
   std::optional<float> exposure, error;
   std::optional<int> spp, bounces;
   std::uint64_t seed = 1;
@@ -47,6 +49,7 @@ View viewOf(const std::string& text, const Opened& opened) {
   const auto is_lightmap = [](const asset::Layer& layer) { return layer.kind == "lightmap"; };
   const auto& layers = opened.asset->layers;
   if (std::any_of(layers.begin(), layers.end(), is_lightmap)) return View::kLightmap;
+  if (std::any_of(layers.begin(), layers.end(), picture::isTransfer)) return View::kRelit;
   return opened.scene.lights.empty() ? View::kObscurance : View::kLit;
 }
 
@@ -61,8 +64,10 @@ picture::Viewpoint viewpointOf(const RenderOptions& options, IVec2 size, const t
   return picture::lookAt(eye, target, glm::radians(options.fov_deg));
 }
 
+bool isRelit(View view) { return view == View::kRelit || view == View::kIndirect; }
+
 /// Shows light that may be as bright as lamps make it.
-bool isLit(View view) { return view == View::kLit || view == View::kLightmap; }
+bool isLit(View view) { return view == View::kLit || view == View::kLightmap || isRelit(view); }
 
 bool isData(View view) {
   return view == View::kNormal || view == View::kBentNormal || view == View::kCharts ||
@@ -105,14 +110,27 @@ void renderReference(const RenderOptions& options, Progress& progress) {
   writePicture(options, linear, View::kLit, how.background);
 }
 
+/// What stands still is lit as the run time lights it; only that throws shadows on what light enters by.
+void relightForPicture(const RenderOptions& options, picture::PictureOptions& picture, Opened& opened) {
+  if (!opened.asset)
+    throw Error(ErrorCode::kNoSuchLayer, options.input, "carries no bake", "bake it first: relume bake");
+  const trace::Tracer shadows(opened.scene);
+  addRelitPlane(*opened.asset, options.layer, {picture.lights, &shadows, options.gains});
+  // What holds all light already needs no lamps beside it.
+  const auto& parameters = transferLayer(*opened.asset, options.layer).parameters;
+  const auto part = parameters.find("part");
+  if (part != parameters.end() && part->second != asset::Parameter(std::string("indirect")))
+    picture.lights.clear();
+}
+
 void renderPicture(const RenderOptions& options, Progress& progress) {
   requireWritable(options.output);
-  if (!options.mode.empty()) return renderReference(options, progress);
+  if (options.mode == "reference" || options.mode == "direct") return renderReference(options, progress);
   const auto opened = open(options.input);
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const IVec2 size = parseExtent(options.size, "--size");
   picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp.value_or(16)};
-  picture.view = viewOf(options.view, *opened);
+  picture.view = options.mode == "relit" ? View::kRelit : viewOf(options.view, *opened);
   picture.layer = options.layer;
   picture.lights = chooseLights(options.lights, opened->scene);
   // Without a word, an ambient light that shows the obscurance: alone it makes white surfaces white, beside
@@ -120,11 +138,13 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   const bool beside_lamps =
       picture.view == View::kLightmap || (picture.view == View::kLit && !picture.lights.empty());
   const std::string ambient = !options.ambient.empty() ? options.ambient
+                              : isRelit(picture.view)  ? "0"
                               : beside_lamps           ? "0.3"
                                                        : "3.14159265";
   picture.ambient = Irradiance(parseTriple(ambient, "--ambient", true));
   picture.beta = options.beta;
   picture.background = parseTriple(options.background, "--background", true);
+  if (isRelit(picture.view)) relightForPicture(options, picture, *opened);
   const image::Image linear = picture::render(tracer, opened->asset ? &*opened->asset : nullptr,
                                               viewpointOf(options, size, tracer), picture, progress);
   writePicture(options, linear, picture.view, picture.background);
@@ -146,8 +166,9 @@ void addRender(CLI::App& app, Program& program) {
       command
           ->add_option("--mode", options->mode,
                        "reference: all light, path-traced without bias; direct: the same with light straight "
-                       "from lamps alone. Without it, a view of the bake")
-          ->check(CLI::IsMember({"reference", "direct"}));
+                       "from lamps alone; relit: lamps and the light that the bake makes of them. Without "
+                       "it, a view of the bake")
+          ->check(CLI::IsMember({"reference", "direct", "relit"}));
   command
       ->add_option("--view", options->view,
                    "what to show; without it, lightmap where the bake has one, lit where the scene has "
@@ -156,8 +177,7 @@ void addRender(CLI::App& app, Program& program) {
                    "albedo without a bake")
       ->check(CLI::IsMember(viewNames()))
       ->excludes(mode);
-  command->add_option("--layer", options->layer, "layer to show; without it, the first that fits")
-      ->excludes(mode);
+  command->add_option("--layer", options->layer, "layer to show; without it, the first that fits");
   command
       ->add_option("--camera", options->camera,
                    "camera of the file; -1: its first, or one that frames the scene")
@@ -193,6 +213,8 @@ void addRender(CLI::App& app, Program& program) {
   command->add_option("--seed", options->seed, "with --mode: of the random numbers")
       ->needs(mode)
       ->capture_default_str();
+  command->add_option("--gain", options->gains,
+                      "of lightgroups, repeatable: GROUP=NUMBER or GROUP=R,G,B; without it, lamps as baked");
   command->add_option("--lights", options->lights, "JSON list of lights; without it, the scene's own");
   command->add_option("--ambient", options->ambient,
                       "ambient irradiance, one number or R,G,B; without it, pi, or 0.3 beside lights. With "

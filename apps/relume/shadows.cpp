@@ -29,15 +29,15 @@ float visibilityOf(const trace::Tracer& tracer, const Light& light, Point p, Nor
 
 }  // namespace
 
-relight::VisibilitySource tracedVisibility(const trace::Tracer& tracer, const asset::AtlasTable& atlas,
-                                           const LightSet& lights) {
-  return [&tracer, &atlas, &lights](std::size_t light, std::span<float> visibility) {
+relight::VisibilitySource tracedVisibility(const trace::Tracer& tracer, std::span<const Point> points,
+                                           std::span<const Normal> normals, const LightSet& lights) {
+  return [&tracer, points, normals, &lights](std::size_t light, std::span<float> visibility) {
     parallelFor(visibility.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const bool faces = glm::dot(atlas.normal[i], directionTo(lights[light], atlas.position[i])) > 0;
-        visibility[i] = faces ? visibilityOf(tracer, lights[light], atlas.position[i], atlas.normal[i],
-                                             static_cast<std::uint32_t>(i))
-                              : 0.0f;
+        const bool faces = glm::dot(normals[i], directionTo(lights[light], points[i])) > 0;
+        visibility[i] =
+            faces ? visibilityOf(tracer, lights[light], points[i], normals[i], static_cast<std::uint32_t>(i))
+                  : 0.0f;
       }
     });
   };

@@ -128,6 +128,10 @@ void Transfer::check(const AtlasTable& atlas, const std::string& layer) const {
   checkExits(exits, matrix.rows, atlas, layer);
 }
 
+float entryPointStep(const Entries& entries) {
+  return gridOf(entries.position, kPoint, coarsestStep(entries)).step;
+}
+
 std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& atlas) {
   transfer.check(atlas, "to be written");
   const codec::BlockMatrix& m = transfer.matrix;

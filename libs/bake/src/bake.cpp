@@ -56,6 +56,17 @@ scene::gltf::BakeOutput outputOf(atlas::Atlas& atlas, const asset::Asset& asset)
   return output;
 }
 
+/// What a layer takes in the file.
+std::uint64_t bytesOf(const nlohmann::json& layer, const scene::gltf::BakeOutput& output) {
+  std::uint64_t bytes = 0;
+  for (const char* arrays : {"planes", "tables"}) {
+    if (!layer.contains(arrays)) continue;
+    for (const auto& array : layer.at(arrays))
+      bytes += output.views.at(array.at("bufferView").get<std::size_t>()).size();
+  }
+  return bytes;
+}
+
 }  // namespace
 
 BakeResult bake(const scene::gltf::Document& document, const BakeOptions& options, Progress& progress) {
@@ -116,8 +127,7 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
     Stage stage(progress, "write", 1);
     scene::gltf::BakeOutput output = outputOf(p.atlas, asset);
     for (std::size_t i = 0; i < asset.layers.size(); ++i)
-      for (const auto& plane : output.transfer.at("layers").at(i).at("planes"))
-        statistics.layers[i].bytes += output.views.at(plane.at("bufferView").get<std::size_t>()).size();
+      statistics.layers[i].bytes = bytesOf(output.transfer.at("layers").at(i), output);
     result.glb = scene::gltf::exportGlb(document, p.scene, output);
   }
   stopwatch.lap("export");

@@ -72,7 +72,7 @@ void warnOfScale(const scene::Scene& scene, float diagonal, Warnings& warnings) 
 
 std::vector<PreparedLayer> resolveLayers(const BakeOptions& options, float diagonal) {
   std::vector<LayerSpec> specs = options.layers;
-  if (specs.empty()) specs.push_back({.kind = "obscurance", .values = {}});
+  if (specs.empty()) specs = {{.kind = "obscurance", .values = {}}, {.kind = "lightpath", .values = {}}};
   std::vector<PreparedLayer> layers;
   std::map<std::string, int> count;
   for (const LayerSpec& spec : specs) {

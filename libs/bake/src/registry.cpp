@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "lightmap_layer.h"
+#include "lightpath_layer.h"
 #include "occlusion_layers.h"
 #include "relume/core/error.h"
 
@@ -118,6 +119,36 @@ std::vector<LayerKind> makeRegistry() {
                        "path: unbiased random walks, slow, to judge others by"}},
        .prepare = prepareLightGroups,
        .needs_light = true},
+      {.name = "lightpath",
+       .summary = "light path maps: indirect light of any lamps, to be multiplied at run time",
+       .emitters = "irradiance on entries",
+       .transport = "radiosity of elements, gathered",
+       .receivers = "blocks of texels, RGB irradiance",
+       .codec = "low rank by tiles and clusters",
+       .parameters =
+           {{"count", Type::kCount, "auto", {}, "entries of light; auto: 512, 1024, 2048, 4096 by quality"},
+            {"entries",
+             Type::kChoice,
+             "patches",
+             {"patches", "shot"},
+             "patches: parts of all surfaces; shot: points that rays meet from where lamps may be"},
+            {"samples", Type::kCount, "16", {}, "points of an entry at which lamps light it"},
+            {"size", Type::kCount, "256", {}, "exits of light along the side of a page, at most"},
+            {"codec",
+             Type::kChoice,
+             "tiles",
+             {"tiles", "cpca"},
+             "tiles: small and close; cpca: clustered principal components, for comparison"},
+            {"error",
+             Type::kShare,
+             "auto",
+             {},
+             "what the encoding may add, a share of the light; auto: 0.05, 0.02, 0.01, 0.005 by quality"},
+            {"clusters", Type::kCount, "auto", {}, "clusters of entries"},
+            {"components", Type::kCount, "auto", {}, "of every block, whatever the error"},
+            {"bits", Type::kChoice, "8", {"8", "16"}, "of a stored number"},
+            kMaterials},
+       .prepare_whole = prepareLightPaths},
   };
 }
 

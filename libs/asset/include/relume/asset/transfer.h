@@ -41,6 +41,10 @@ struct Transfer {
   void check(const AtlasTable& atlas, const std::string& layer) const;
 };
 
+/// The grid that positions of entry points are kept on, metres: one may come back up to 0.87 steps off, and
+/// so under its surface. Points that rays will start from are better moved up a step first.
+float entryPointStep(const Entries& entries);
+
 /// Tables for Layer::tables. Positions of entry points are kept to 2^-12 of the mean entry's side (or 2^-23
 /// of the extent, where that is coarser), normals to 1e-4 rad, all else bit for bit. Throws as check().
 std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& atlas);

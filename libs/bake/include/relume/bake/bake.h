@@ -23,7 +23,7 @@
 namespace relume::bake {
 
 struct BakeOptions {
-  std::vector<LayerSpec> layers;  ///< empty: obscurance
+  std::vector<LayerSpec> layers;  ///< empty: obscurance and lightpath
   Quality quality = Quality::kMedium;
   std::uint32_t samples =
       0;  ///< rays per texel, exactly (rounded up to a power of two); 0: as the quality says

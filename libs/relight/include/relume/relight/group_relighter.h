@@ -25,7 +25,8 @@ class GroupRelighter {
   const std::vector<std::string>& groupNames() const { return names_; }
 
   /// gains: [groups], by colour. Shape: [texels of the atlas table]; valid until the next call. Throws Error
-  /// kInvalidValue for a gain that is negative or not finite, and keeps what was; allocates nothing.
+  /// kInvalidValue for a gain that is negative or not finite, and keeps what was; allocates nothing after the
+  /// first call.
   std::span<const Irradiance> evaluate(std::span<const Vec3> gains);
 
  private:

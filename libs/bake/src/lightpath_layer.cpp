@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// Based on:
+//   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer. Sections 5 to 7.
+#include "lightpath_layer.h"
+
+#include <algorithm>
+#include <array>
+
+#include "forecast.h"
+#include "relume/asset/transfer.h"
+#include "relume/codec/encode_clustered_pca.h"
+#include "relume/codec/encode_tiles.h"
+#include "relume/core/kmeans.h"
+#include "relume/core/parallel.h"
+#include "relume/transport/light_paths.h"
+
+namespace relume::bake {
+namespace {
+
+using transport::LightPathOptions;
+using transport::LightPaths;
+
+/// What a quality means for transfer: entries for the light sets, rays and elements for the transfer itself,
+/// and a bound on what the encoding may add. About equal parts each.
+struct Preset {
+  std::uint32_t entries, elements, exit_rays;
+  double error;
+};
+constexpr std::array<Preset, 4> kPresets = {
+    {{.entries = 512, .elements = 4096, .exit_rays = 256, .error = 0.05},
+     {.entries = 1024, .elements = 8192, .exit_rays = 1024, .error = 0.02},
+     {.entries = 2048, .elements = 12288, .exit_rays = 2048, .error = 0.01},
+     {.entries = 4096, .elements = 16384, .exit_rays = 4096, .error = 0.005}}};
+
+constexpr std::uint32_t kTrainingLights = 768, kHeldOutLights = 64;
+constexpr float kNormalTerm = 4.0f;             // entries' sides that a turned normal counts as, in clusters
+constexpr std::size_t kColumnsOfCluster = 384;  // about
+constexpr std::size_t kPaperClusters = 32, kPaperComponents = 8;
+
+struct Coding {
+  bool clustered_pca = false;
+  double error = 0.02;
+  std::size_t clusters = 0, components = 0;  // 0: chosen here
+  std::uint32_t bits = 8;
+};
+
+template <class T>
+T given(const Parameters& parameters, const char* name, T otherwise) {
+  const auto found = parameters.find(name);
+  return found == parameters.end() ? otherwise : static_cast<T>(std::get<double>(found->second));
+}
+
+const std::string& word(const Parameters& parameters, const char* name) {
+  return std::get<std::string>(parameters.at(name));
+}
+
+const Preset& presetOf(const QualitySettings& quality) {
+  return kPresets[static_cast<std::size_t>(quality.quality)];
+}
+
+LightPathOptions optionsOf(const LayerContext& context, const Parameters& parameters) {
+  const Preset& preset = presetOf(context.quality);
+  LightPathOptions o;
+  o.placement = word(parameters, "entries") == "shot" ? transport::EntryPlacement::kShot
+                                                      : transport::EntryPlacement::kPatches;
+  o.entries = given(parameters, "count", preset.entries);
+  o.entry_samples = given(parameters, "samples", o.entry_samples);
+  o.elements = preset.elements;
+  o.exit_rays = context.quality.exact() ? context.quality.max_samples : preset.exit_rays;
+  const auto across = given(parameters, "size", 256u);
+  const auto side = static_cast<std::uint32_t>(std::max(context.texels.width, context.texels.height));
+  o.exit_side = std::clamp((side + across - 1) / across, 1u, 64u);
+  o.materials = word(parameters, "materials") == "lambert" ? transport::Materials::kLambert
+                                                           : transport::Materials::kFull;
+  o.seed = context.seed;
+  return o;
+}
+
+Coding codingOf(const LayerContext& context, const Parameters& parameters) {
+  Coding coding;
+  coding.clustered_pca = word(parameters, "codec") == "cpca";
+  coding.clusters = given(parameters, "clusters", std::size_t{0});
+  coding.components = given(parameters, "components", std::size_t{0});
+  coding.error = given(parameters, "error",
+                       coding.components > 0 || coding.clustered_pca ? 0 : presetOf(context.quality).error);
+  coding.bits = word(parameters, "bits") == "16" ? 16 : 8;
+  return coding;
+}
+
+Digest keyOf(const LightPathOptions& o, const Coding& c) {
+  return Hasher()
+      .add(std::string_view("lightpath 1"))  // raise when results change
+      .add(o.placement)
+      .add(o.entries)
+      .add(o.entry_samples)
+      .add(o.elements)
+      .add(o.element_rays)
+      .add(o.exit_side)
+      .add(o.exit_rays)
+      .add(o.materials)
+      .add(o.seed)
+      .add(c.clustered_pca)
+      .add(c.error)
+      .add(c.clusters)
+      .add(c.components)
+      .add(c.bits)
+      .digest();
+}
+
+/// Irradiance of random lights on the entries. Where no light finds room, single entries lit one by one.
+std::vector<float> lightSets(const LightPaths& paths, std::uint32_t count, std::uint64_t seed,
+                             Progress& progress) {
+  const LightSet lights =
+      paths.lights(count, {.nearest = 0.25f * paths.spacing(), .spots = 0.25f}, seed, progress);
+  const std::size_t entries = paths.entries().size();
+  std::vector<float> sets;
+  const std::vector<float> all = paths.entryIrradiance(lights, progress);
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(l * entries);
+    const auto last = first + static_cast<std::ptrdiff_t>(entries);
+    if (std::any_of(first, last, [](float e) { return e > 0; })) sets.insert(sets.end(), first, last);
+  }
+  for (std::size_t e = 0; sets.size() < entries * std::min<std::size_t>(count, entries) / 8; ++e) {
+    sets.resize(sets.size() + entries, 0.0f);
+    sets[sets.size() - entries + (e * 7919 + seed) % entries] = 1.0f;
+  }
+  return sets;
+}
+
+/// Entries that lie together and face alike.
+codec::ColumnClusters clusterEntries(const transport::Entries& entries, float spacing, std::size_t clusters) {
+  std::vector<float> features;
+  features.reserve(entries.size() * 6);
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const Vec3 n = kNormalTerm * spacing * entries.normal[e];
+    for (int c = 0; c < 3; ++c) features.push_back(entries.centre[e][c]);
+    for (int c = 0; c < 3; ++c) features.push_back(n[c]);
+  }
+  const KMeans parts = kMeans(features, 6, entries.area, {.clusters = clusters});
+  return codec::clustersFromLabels(parts.label, parts.clusters);
+}
+
+codec::Transfer matrixOf(const LightPaths& paths) {
+  const transport::ExitTiles& tiles = paths.tiles();
+  return {.rows = static_cast<std::uint32_t>(paths.exits().size()),
+          .columns = static_cast<std::uint32_t>(paths.entries().size()),
+          .channels = 3,
+          .tiles = {.first = tiles.first, .row = tiles.row, .blend = tiles.blend},
+          .source = [&paths](std::size_t tile, std::span<float> out) { paths.rows(tile, out); }};
+}
+
+asset::Entries storedEntries(const transport::Entries& entries) {
+  asset::Entries stored{.samples = entries.samples_each, .position = {}, .normal = {}, .area = entries.area};
+  for (const transport::EntrySample& s : entries.samples) {
+    stored.position.push_back(s.position);
+    stored.normal.push_back(s.normal);
+  }
+  // Rounded to the grid of the file they must not lie in their own shadow.
+  const float step = asset::entryPointStep(stored);
+  for (std::size_t i = 0; i < stored.position.size(); ++i) stored.position[i] += step * stored.normal[i];
+  return stored;
+}
+
+struct Encoded {
+  codec::BlockMatrix matrix;
+  double error = 0;
+};
+
+Encoded encode(const codec::Transfer& matrix, const codec::ColumnClusters& columns,
+               const codec::Lights& lights, const Coding& coding, Progress& progress) {
+  if (coding.clustered_pca) {
+    auto encoded = codec::encodeClusteredPca(matrix, columns, lights,
+                                             {.rank = coding.components > 0 ? coding.components
+                                                      : coding.error > 0    ? columns.column.size()
+                                                                            : kPaperComponents,
+                                              .error = coding.error,
+                                              .bits = coding.bits},
+                                             &progress);
+    return {std::move(encoded.matrix), encoded.report.error.mean};
+  }
+  auto encoded = codec::encodeTiles(matrix, columns, lights,
+                                    {.error = coding.error,
+                                     // Dark rows may be off by as much as all of it is at the worst.
+                                     .row_error = 5 * coding.error,
+                                     .rank = coding.components,
+                                     .bits = coding.bits},
+                                    &progress);
+  return {std::move(encoded.matrix), encoded.report.error.mean};
+}
+
+WholeLayer solveLightPaths(const LayerContext& context, const LightPathOptions& options, const Coding& coding,
+                           Progress& progress) {
+  const LightPaths paths(context.tracer, context.atlas, context.texels, options, progress);
+  const codec::Lights lights{.training = lightSets(paths, kTrainingLights, options.seed * 2, progress),
+                             .held_out = lightSets(paths, kHeldOutLights, options.seed * 2 + 1, progress)};
+  const std::size_t entries = paths.entries().size();
+  const std::size_t clusters = coding.clusters > 0    ? coding.clusters
+                               : coding.clustered_pca ? kPaperClusters
+                                                      : (entries + kColumnsOfCluster - 1) / kColumnsOfCluster;
+  const codec::ColumnClusters columns = clusterEntries(paths.entries(), paths.spacing(), clusters);
+  const codec::Transfer matrix = matrixOf(paths);
+  Encoded encoded = encode(matrix, columns, lights, coding, progress);
+  const asset::Transfer transfer{
+      .matrix = std::move(encoded.matrix),
+      .entries = storedEntries(paths.entries()),
+      .exits = {.side = options.exit_side, .exit_of_texel = paths.exits().of_texel}};
+  WholeLayer solved;
+  solved.layer.tables = asset::transferTables(transfer, context.table);
+  solved.layer.error_estimate = encoded.error;
+  solved.layer.samples = options.exit_rays;
+  solved.rays = paths.rays();
+  return solved;
+}
+
+/// From a bake with a quarter of the entries and elements, and one tile of it. Rays grow with either, the
+/// rows of the transfer and of what elements send out with both.
+double forecastLightPaths(const LayerContext& context, LightPathOptions options, Progress& progress) {
+  constexpr std::uint32_t kLess = 4;
+  options.entries = std::max(options.entries / kLess, 16u),
+  options.elements = std::max(options.elements / kLess, 64u);
+  const double begin = steadySeconds();
+  const LightPaths paths(context.tracer, context.atlas, context.texels, options, progress);
+  const double solved = steadySeconds();
+  const std::size_t tiles = paths.tiles().size();
+  if (tiles == 0) return 0;
+  const std::size_t tile = tiles / 2, rows = paths.tiles().first[tile + 1] - paths.tiles().first[tile];
+  std::vector<float> out(rows * 3 * paths.entries().size());
+  paths.rows(tile, out);
+  const double one_tile = steadySeconds() - solved;
+  constexpr double kGrowth = 1.5 * kLess;  // between the rays' and the rows'
+  return kGrowth * (solved - begin) +
+         2.0 * one_tile * static_cast<double>(tiles) * kLess / static_cast<double>(threadCount());
+}
+
+}  // namespace
+
+WholeJob prepareLightPaths(const LayerContext& context, const Parameters& parameters) {
+  const LightPathOptions options = optionsOf(context, parameters);
+  const Coding coding = codingOf(context, parameters);
+  const asset::AtlasTable& table = context.table;
+  return {.key = keyOf(options, coding),
+          .solve = [context, options, coding](
+                       Progress& progress) { return solveLightPaths(context, options, coding, progress); },
+          .forecast = [context, options](
+                          Progress& progress) { return forecastLightPaths(context, options, progress); },
+          .raw_bytes =
+              [&table](const asset::Layer& layer) {
+                const codec::BlockMatrix matrix = asset::readTransfer(layer, table).matrix;
+                return std::uint64_t{4} * matrix.rows * matrix.columns * matrix.channels;
+              }};
+}
+
+}  // namespace relume::bake

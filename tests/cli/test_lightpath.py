@@ -1,0 +1,142 @@
+"""Light path maps as a person bakes, relights and shows them. Usage: test_lightpath.py RELUME [unittest arguments]"""
+import json
+import math
+import pathlib
+import sys
+import unittest
+
+import glb
+import test_cli
+from test_cli import relume
+
+SMALL = "lightpath:count=128,size=64,error=0.03"
+
+
+class LightPath(test_cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        # A room of two colours, open to the front, with a block in it.
+        b = glb.Builder()
+        white, red = b.material([0.7, 0.7, 0.7]), b.material([0.7, 0.2, 0.1])
+        b.node(b.quads([([-2, 0, -2], [0, 0, 4], [4, 0, 0]), ([-2, 3, -2], [4, 0, 0], [0, 0, 4]), ([-2, 0, -2], [4, 0, 0], [0, 3, 0]),
+                        ([2, 0, -2], [0, 0, 4], [0, 3, 0])], white), "room")
+        b.node(b.quads([([-2, 0, -2], [0, 3, 0], [0, 0, 4])], red), "red wall")
+        b.node(b.box([0.3, 0, -1], [0.6, 1.4, 0.6], white), "block")
+        self.room = b.write(self.folder / "room.glb")
+        self.lights = self.folder / "lights.json"
+
+    def lamp(self, **fields):
+        return {"type": "point", "intensity": 10, "position": [-0.8, 1.6, 0.3], **fields}
+
+    def light(self, *lamps):
+        self.lights.write_text(json.dumps(lamps))
+
+    def small(self, *args, output=None):
+        return self.bake("--layer", SMALL, "--quality", "draft", "--atlas-size", 128, *args, scene=self.room, output=output)
+
+    def relit(self, *args):
+        path = self.folder / "relit.exr"
+        relume("relight", self.baked, "--lights", self.lights, "-o", path, *args)
+        return [glb.read_exr(path)[2][c] for c in "RGB"]
+
+    def test_relit_is_what_path_tracing_finds(self):
+        self.small()
+        for lamp in (self.lamp(), self.lamp(type="spot", position=[1, 2.2, 1], direction=[-0.7, -0.5, -0.4], spot={"outerConeAngle": 0.6}),
+                     self.lamp(type="area", position=[0, 2.4, 0], normal=[0, -1, 0], area=0.2)):
+            self.light(lamp)
+            relit = self.relit()
+            truth_path = self.folder / "truth"
+            self.bake("--layer", "lightmap:part=indirect", "--quality", "high", "--lights", self.lights, "--atlas-size", 128, scene=self.room,
+                      output=self.folder / "truth.glb")
+            relume("export", self.folder / "truth.glb", "--layer", "lightmap", "-o", truth_path)
+            truth = [glb.read_exr(truth_path / "lightmap.exr")[2][c] for c in "RGB"]
+            error = sum((a - b) ** 2 for x, y in zip(relit, truth) for a, b in zip(x, y))
+            norm = sum(b * b for y in truth for b in y)
+            # Entries of 0.6 m and lamps a metre from the walls, 128 entries.
+            self.assertLess(math.sqrt(error / norm), 0.1, lamp["type"])
+            for x, y in zip(relit, truth):
+                self.assertAlmostEqual(sum(x), sum(y), delta=0.03 * sum(y))
+
+    def test_light_is_linear_and_has_colours(self):
+        self.small()
+        self.light(self.lamp(color=[1, 0.5, 0]))
+        one = self.relit()
+        self.light(self.lamp(color=[1, 0.5, 0], intensity=30))
+        three = self.relit()
+        self.assertAlmostEqual(sum(three[0]), 3 * sum(one[0]), delta=1e-4 * sum(three[0]))
+        self.assertEqual(max(one[2]), 0)
+        self.light(self.lamp(color=[1, 0.5, 0]), self.lamp(color=[1, 0.5, 0], intensity=20))
+        self.assertAlmostEqual(sum(self.relit()[1]), sum(three[1]), delta=1e-4 * sum(three[1]))
+        self.light()
+        self.assertEqual(max(self.relit()[0]), 0)
+
+    def test_same_bytes_for_any_number_of_threads_and_from_the_cache(self):
+        def once(name, *args):
+            done = self.small(*args, output=self.folder / name)
+            return (self.folder / name).read_bytes(), done.stdout
+
+        whole, _ = once("a.glb", "--no-cache")
+        self.assertTrue(whole == once("b.glb", "--no-cache", "--threads", 1)[0])
+        kept = ["--cache", self.folder / "own"]
+        self.assertTrue(whole == once("c.glb", *kept)[0])
+        again, said = once("d.glb", *kept)
+        self.assertTrue(whole == again)
+        self.assertIn("0 texels computed", said)
+        for entry in (self.folder / "own").glob("*.layer"):
+            entry.write_bytes(entry.read_bytes()[:-100])
+        self.assertTrue(whole == once("e.glb", *kept)[0])
+
+    def test_pictures(self):
+        self.small()
+        self.light(self.lamp())
+        view = ["--size", "64x48", "--eye", "0,1.5,5", "--target", "0,1.3,0", "--lights", self.lights]
+        relume("render", self.baked, "-o", self.folder / "relit.exr", "--mode", "relit", *view)
+        relume("render", self.baked, "-o", self.folder / "truth.exr", "--mode", "reference", "--spp", 256, "--materials", "lambert", *view)
+        relume("render", self.baked, "-o", self.folder / "direct.exr", "--mode", "direct", "--spp", 64, "--materials", "lambert", *view)
+        compare = lambda a, b: json.loads(relume("compare", self.folder / a, self.folder / b, "--json").stdout)["relative"]
+        self.assertLess(compare("relit.exr", "truth.exr"), 0.1)
+        self.assertGreater(compare("direct.exr", "truth.exr"), 0.2)
+        relume("render", self.baked, "-o", self.folder / "indirect.png", "--view", "indirect", *view)
+        self.bake("--layer", "ao", output=self.folder / "ao.glb")
+        self.assertIn("lightpath", relume("render", self.folder / "ao.glb", "-o", self.folder / "no.png", "--mode", "relit", *view, expect=1).stderr)
+
+    def test_the_default_bake_is_relightable(self):
+        relume("bake", self.room, "-o", self.baked, "--quality", "draft", "--atlas-size", 64)
+        layers = glb.read_glb(self.baked)[0]["extensions"]["RELUME_transfer"]["layers"]
+        self.assertEqual([layer["kind"] for layer in layers], ["obscurance", "lightpath"])
+
+    def test_groups_are_dimmed_and_coloured(self):
+        self.light(self.lamp(name="a"), self.lamp(name="b", position=[1, 2, 1]))
+        self.bake("--layer", "lightgroups", "--quality", "draft", "--lights", self.lights, scene=self.room)
+        whole, without, red = (sum(map(sum, self.relit(*gains))) for gains in ([], ["--gain", "a=0"], ["--gain", "a=0", "--gain", "b=3,0,0"]))
+        self.assertLess(without, 0.9 * whole)
+        self.assertGreater(red, 1.05 * without)
+        self.assertIn("there are a, b", relume("relight", self.baked, "-o", self.folder / "no.exr", "--gain", "c=1", expect=2).stderr)
+        relume("render", self.baked, "-o", self.folder / "groups.png", "--mode", "relit", "--gain", "a=0.5", "--size", "64x48")
+
+    def test_the_papers_codec(self):
+        self.bake("--layer", "lightpath:count=64,size=32,codec=cpca,clusters=4,components=6", "--quality", "draft", "--atlas-size", 64, scene=self.room)
+        self.light(self.lamp())
+        self.assertGreater(sum(self.relit()[0]), 0)
+
+    def test_inspect_and_statistics_tell_its_size(self):
+        stats = self.folder / "s.json"
+        self.small("--stats", stats)
+        layer = json.loads(stats.read_text())["layers"][0]
+        shown = json.loads(relume("inspect", self.baked, "--json").stdout)["layers"][0]
+        self.assertEqual(shown["bytes"], layer["bytes"])
+        self.assertGreater(layer["bytes"], 1000)
+        self.assertGreater(layer["raw_bytes"], 10 * layer["bytes"])
+        self.assertLess(layer["error_estimate"], 0.0301)
+
+    def test_a_forecast(self):
+        self.assertIn("lightpath", self.small("--dry-run").stdout)
+
+    def test_wrong_usage(self):
+        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=some", "lightpath:bits=12"):
+            self.assertIn("lightpath", self.bake("--layer", layer, scene=self.room, expect=2).stderr)
+
+
+if __name__ == "__main__":
+    test_cli.RELUME = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
