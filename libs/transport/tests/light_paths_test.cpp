@@ -95,7 +95,7 @@ TEST(LightPaths, EntriesPartTheSurface) {
   const Entries& entries = room.paths.entries();
   EXPECT_GE(entries.size(), 120u);
   EXPECT_LE(entries.size(), 140u);
-  EXPECT_NEAR(std::accumulate(entries.area.begin(), entries.area.end(), 0.0), 24.0, 0.01);
+  EXPECT_NEAR(std::accumulate(entries.area.begin(), entries.area.end(), 0.0), 24.0, 0.05);  // by rays
   const float mean = 24.0f / static_cast<float>(entries.size());
   for (std::size_t e = 0; e < entries.size(); ++e) {
     EXPECT_GT(entries.area[e], 0.3f * mean);

@@ -23,6 +23,7 @@
 #include "relume/core/check.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
+#include "relume/core/quantity.h"
 #include "relume/core/sampling.h"
 
 namespace relume::transport {
@@ -164,6 +165,24 @@ struct LightPaths::Impl {
     placeElements(view, progress);
   }
 
+  /// By side: how much of the light that falls there others see again, but for what it does in between. A
+  /// mean by area alone would be too low where surfaces lie upon each other: those hidden parts are dark, and
+  /// nobody sees them.
+  std::vector<float> placeWeights() const {
+    std::vector<double> area(pieces.size(), 0.0);
+    for (std::size_t side = 0; side < sides.size(); ++side)
+      if (pieces.of_side[side] != scene::kNone)
+        area[pieces.of_side[side]] += static_cast<double>(sides.area(side));
+    std::vector<float> weight(sides.size(), 0.0f);
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      const std::uint32_t piece = pieces.of_side[side];
+      if (piece == scene::kNone || !(area[piece] > 0)) continue;
+      const float share = sides.area(side) / static_cast<float>(area[piece]);
+      weight[side] = share * pieces.all[piece].area * luminance(reflectance.value[sides.point(side)]);
+    }
+    return weight;
+  }
+
   void placeEntries(const LightView& light, Progress& progress) {
     const std::vector<float> importance = light.importance(pieces.all, kLeastEntries);
     const Clusters clusters = makeLitClusters(tracer, pieces.all, importance, light,
@@ -178,7 +197,7 @@ struct LightPaths::Impl {
     for (std::size_t side = 0; side < of_side.size(); ++side)
       if (pieces.of_side[side] != scene::kNone) of_side[side] = entry_of_piece[pieces.of_side[side]];
     const Members members = membersOf(of_side, clusters.size());
-    entry_places = placesOn(texels, sides, members, options.entry_samples, options.seed);
+    entry_places = placesOn(texels, sides, placeWeights(), members, options.entry_samples, options.seed);
     entries.samples_each = options.entry_samples;
     for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
     entries.area.assign(clusters.size(), 0.0f);
@@ -292,7 +311,8 @@ struct LightPaths::Impl {
             on_piece[l * pieces.size() + p] = on_entry[l * entries.size() + entry_of_piece[p]];
     } else {
       const std::vector<Place> places =
-          placesOn(texels, sides, membersOf(pieces.of_side, pieces.size()), kPiecePlaces, options.seed + 2);
+          placesOn(texels, sides, placeWeights(), membersOf(pieces.of_side, pieces.size()), kPiecePlaces,
+                   options.seed + 2);
       on_piece = lightOn(lights, places, kPiecePlaces, progress);
     }
     const ElementLight of_lights(

@@ -51,10 +51,22 @@ class Collector {
         }
       }
       pieces_.of_side[side] = piece;
-      pieces_.all[piece].area += sides_.area(side);
     }
   }
-  Pieces take() { return std::move(pieces_); }
+  /// Areas by the rays of others: A_j F_ji summed over all j is A_i where all that i sees is surface.
+  Pieces take() {
+    std::vector<double> seen(pieces_.size(), 0.0);
+    for (std::size_t side = 0; side < sides_.size(); ++side) {
+      if (pieces_.of_side[side] == scene::kNone) continue;
+      const double share = static_cast<double>(sides_.area(side)) / sides_.raysEach();
+      for (const SideOfTexel end : sides_.ends(side)) {
+        const std::uint32_t met = sides_.answering(end);
+        if (met != scene::kNone && pieces_.of_side[met] != scene::kNone) seen[pieces_.of_side[met]] += share;
+      }
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) pieces_.all[i].area = static_cast<float>(seen[i]);
+    return std::move(pieces_);
+  }
 
  private:
   enum Part : std::uint8_t { kNotMine, kTogether, kApart };

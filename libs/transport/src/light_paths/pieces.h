@@ -13,7 +13,7 @@ namespace relume::transport {
 struct Piece {
   Point position{0};  ///< on the surface, in the middle
   Normal normal{0, 0, 1};
-  float area = 0;  ///< m^2
+  float area = 0;  ///< m^2, of what other surfaces see of it: nothing where it lies upon something
 };
 
 struct Pieces {

@@ -43,22 +43,22 @@ std::vector<std::uint32_t> alongCurve(const atlas::Texels& texels, const Sides& 
 
 }  // namespace
 
-std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, const Members& groups,
-                            std::uint32_t each, std::uint64_t seed) {
+std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, std::span<const float> weight,
+                            const Members& groups, std::uint32_t each, std::uint64_t seed) {
   const std::size_t count = groups.first.size() - 1;
   std::vector<Place> places(count * each);
   parallelFor(count, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       const std::vector<std::uint32_t> order = alongCurve(texels, sides, groups.of(g));
-      double area = 0, so_far = 0;
-      for (const std::uint32_t side : order) area += static_cast<double>(sides.area(side));
+      double all = 0, so_far = 0;
+      for (const std::uint32_t side : order) all += static_cast<double>(weight[side]);
       std::size_t at = 0;
       const std::uint32_t stream = streamOf(seed, static_cast<std::uint32_t>(g), 0);
       for (std::uint32_t k = 0; k < each; ++k) {
         const Vec2 u = sobol2(k, stream), v = sobol2(k, hashCombine(stream, 1));
-        const double target = (k + static_cast<double>(v.x)) / each * area;
-        while (at + 1 < order.size() && so_far + static_cast<double>(sides.area(order[at])) <= target)
-          so_far += static_cast<double>(sides.area(order[at++]));
+        const double target = (k + static_cast<double>(v.x)) / each * all;
+        while (at + 1 < order.size() && so_far + static_cast<double>(weight[order[at]]) <= target)
+          so_far += static_cast<double>(weight[order[at++]]);
         const std::uint32_t side = order[at];
         places[g * each + k] = {footprintPosition(texels, texels.points[sides.point(side)], u),
                                 sides.shadingNormal(side), sides.geometricNormal(side)};

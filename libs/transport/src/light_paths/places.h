@@ -15,10 +15,10 @@ struct Place {
   Normal shading_normal{0, 0, 1}, geometric_normal{0, 0, 1};
 };
 
-/// `each` places on every group, equal shares of its area each: strata along a curve through the group.
-/// Shape: [groups][each]. Every group has a member.
-std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, const Members& groups,
-                            std::uint32_t each, std::uint64_t seed);
+/// `each` places on every group, equal shares of its weight each: strata along a curve through the group.
+/// weight: by side, not negative. Shape: [groups][each]. Every group has a member.
+std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, std::span<const float> weight,
+                            const Members& groups, std::uint32_t each, std::uint64_t seed);
 
 /// Irradiance at a place from one light, with a shadow ray to its middle; light from behind the surface does
 /// not count. `stream`: of decisions about alpha.
