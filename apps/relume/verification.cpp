@@ -14,17 +14,13 @@
 #include "relume/core/sampling.h"
 #include "relume/picture/baked_values.h"
 #include "relume/transport/reference.h"
+#include "verification_places.h"
 
 namespace relume::app {
 namespace {
 
 constexpr std::size_t kWorst = 10;
 constexpr double kBeyondNoise = 4;  // standard errors
-
-struct Place {
-  scene::Hit hit;
-  double baked = 0;
-};
 
 /// What is known of one place: luminance of the irradiance.
 struct Sample {
@@ -58,7 +54,7 @@ Agreement agreementOf(std::span<const Sample> samples) {
   return a;
 }
 
-std::vector<ObjectAgreement> byObject(const scene::Scene& scene, std::span<const Place> places,
+std::vector<ObjectAgreement> byObject(const scene::Scene& scene, std::span<const VerifiedPlace> places,
                                       std::span<const Sample> samples) {
   std::map<std::uint32_t, std::vector<Sample>> of_instance;
   for (std::size_t i = 0; i < places.size(); ++i) of_instance[places[i].hit.instance].push_back(samples[i]);
@@ -66,96 +62,6 @@ std::vector<ObjectAgreement> byObject(const scene::Scene& scene, std::span<const
   for (const auto& [instance, own] : of_instance)
     objects.push_back({agreementOf(own), scene.instances[instance].name});
   return objects;
-}
-
-/// Places with equal shares of the baked area.
-class SurfaceSampler {
- public:
-  explicit SurfaceSampler(const scene::Scene& scene) : scene_(scene) {
-    double area = 0;
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-      const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-      if (scene.instances[i].dynamic || mesh.atlas_page == scene::kNone) continue;
-      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Point a = corner(i, t, 0, 0), b = corner(i, t, 1, 0), c = corner(i, t, 0, 1);
-        area += 0.5 * static_cast<double>(glm::length(glm::cross(b - a, c - a)));
-        triangles_.push_back({i, t});
-        until_.push_back(area);
-      }
-    }
-  }
-  bool empty() const { return until_.empty() || !(until_.back() > 0); }
-  /// share, u in [0, 1).
-  scene::Hit at(double share, Vec2 u) const {
-    const auto found = std::upper_bound(until_.begin(), until_.end(), share * until_.back());
-    const auto k = std::min(static_cast<std::size_t>(found - until_.begin()), until_.size() - 1);
-    const float root = std::sqrt(u.x);
-    return {triangles_[k].instance, triangles_[k].triangle, root * (1 - u.y), root * u.y};
-  }
-
- private:
-  Point corner(std::uint32_t instance, std::uint32_t triangle, float b1, float b2) const {
-    return scene::worldPosition(scene_, {instance, triangle, b1, b2});
-  }
-  struct Triangle {
-    std::uint32_t instance, triangle;
-  };
-  const scene::Scene& scene_;
-  std::vector<Triangle> triangles_;
-  std::vector<double> until_;  // area up to and with each
-};
-
-/// Another surface lies in the same plane: what is true there depends on which of the two is asked.
-bool coincides(const trace::Tracer& tracer, const scene::Hit& own, float diagonal) {
-  const scene::Scene& scene = tracer.scene();
-  const Point p = scene::worldPosition(scene, own);
-  const Normal n = scene::geometricNormal(scene, own.instance, own.triangle);
-  const float near = 3e-5f * diagonal;
-  trace::Ray ray{p + near * n, -n, 2 * near};
-  for (int layer = 0; layer < 4; ++layer) {
-    const trace::RayHit hit = tracer.intersect(ray);
-    if (!hit) return false;
-    if (hit.where.instance != own.instance || hit.where.triangle != own.triangle) return true;
-    ray.origin = trace::offsetOrigin(p, -n);
-    ray.t_max = near;
-  }
-  return false;
-}
-
-/// Inside a body, where no eye is: what a texel that reaches in there holds is the value beside it.
-bool buried(const trace::Tracer& tracer, const scene::Hit& own, std::uint32_t stream) {
-  constexpr std::uint32_t kRays = 16, kBacks = 4;
-  const Normal n = scene::geometricNormal(tracer.scene(), own.instance, own.triangle);
-  const Point origin = trace::offsetOrigin(scene::worldPosition(tracer.scene(), own), n);
-  const Frame frame = Frame::about(n);
-  std::uint32_t backs = 0;
-  for (std::uint32_t i = 0; i < kRays; ++i)
-    backs += tracer.intersect({origin, frame.toWorld(squareToCosineHemisphere(sobol2(i, stream)))}).back_face;
-  return backs > kBacks;
-}
-
-std::vector<Place> choosePlaces(const trace::Tracer& tracer, const picture::BakedValues& baked,
-                                const VerifyOptions& options, std::size_t& skipped) {
-  const scene::Scene& scene = tracer.scene();
-  const float diagonal = scene.bounds().diagonal();
-  const SurfaceSampler surface(scene);
-  std::vector<Place> places;
-  if (surface.empty()) return places;
-  for (std::uint32_t k = 0; k < options.points; ++k) {
-    const std::uint32_t stream = streamOf(options.seed, 0, 0);
-    const double share = (k + static_cast<double>(sobol2(k, stream).x)) / options.points;
-    const scene::Hit hit = surface.at(share, sobol2(k, stream + 1));
-    const auto place = baked.locate(hit);
-    const auto index = place ? baked.tableIndex(*place) : std::nullopt;
-    if (!index || !baked.table().valid[*index] || scene::opacityAt(scene, hit) < 0.5f ||
-        scene::geometricNormal(scene, hit.instance, hit.triangle) == Normal(0) ||
-        coincides(tracer, hit, diagonal) || buried(tracer, hit, stream + 2)) {
-      ++skipped;
-      continue;
-    }
-    places.push_back({hit, static_cast<double>(luminance(baked.value(*place)))});
-  }
-  return places;
 }
 
 }  // namespace
@@ -167,12 +73,12 @@ Verification verifyLightmap(const scene::Scene& scene, const asset::Asset& asset
   Verification result;
   result.layer = layer.name, result.error_estimate = layer.error_estimate;
   const transport::Reference reference(scene);
-  const std::vector<Place> places = choosePlaces(reference.tracer(), baked, options, result.skipped);
+  const std::vector<VerifiedPlace> places = choosePlaces(reference.tracer(), baked, options, result.skipped);
   if (places.empty()) throw Error(ErrorCode::kEmptyScene, scene.name, "no baked surface was found to verify");
   result.points = places.size();
 
   std::vector<transport::Receiver> receivers;
-  for (const Place& place : places)
+  for (const VerifiedPlace& place : places)
     receivers.push_back({scene::worldPosition(scene, place.hit),
                          scene::geometricNormal(scene, place.hit.instance, place.hit.triangle),
                          scene::shadingNormal(scene, place.hit)});

@@ -2,6 +2,7 @@
 // relume verify: a bake against path-traced truth.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "files.h"
 #include "lightmap_comparison.h"
 #include "reference_picture.h"
+#include "relit_comparison.h"
 #include "relume/core/error.h"
 #include "relume/core/file.h"
 #include "report_folder.h"
@@ -22,6 +24,8 @@ namespace {
 struct VerifyCommandOptions {
   std::string asset, lights, json, report, size = "480x270";
   VerifyOptions verify;
+  std::uint32_t lamps = 20;
+  bool near = false;
   ViewOptions views;
 };
 
@@ -37,6 +41,44 @@ void print(const Verification& v) {
                p.truth_error, p.object, p.position.x, p.position.y, p.position.z);
 }
 
+void print(const RelitVerification& v) {
+  fmt::print("{}: {} lamps, {} places, {} paths; entries {:.2f} m wide\n", v.layer, v.lamps.size(), v.points,
+             v.paths, v.spacing);
+  fmt::print(
+      "error of indirect irradiance: median {:.2f} %, mean {:.2f} %, worst {:.2f} %; encoding {:.2f} %\n",
+      v.median * 100, v.mean * 100, v.worst * 100, v.error_estimate * 100);
+}
+
+/// Transfer is compared where it is asked for, and where there is nothing else.
+bool comparesTransfer(const asset::Asset& asset, const std::string& layer) {
+  if (!layer.empty()) return asset.layer(layer).kind == "lightpath";
+  const auto is = [&](const char* kind) {
+    return std::any_of(asset.layers.begin(), asset.layers.end(),
+                       [&](const asset::Layer& l) { return l.kind == kind; });
+  };
+  return is("lightpath") && !is("lightmap");
+}
+
+/// Numbers printed, and what a report shows.
+Comparison verified(const VerifyCommandOptions& options, Opened& opened, const ViewOptions& views,
+                    bool pictures, Progress& progress) {
+  const asset::Asset& asset = *opened.asset;
+  if (comparesTransfer(asset, options.verify.layer)) {
+    const RelitVerification v =
+        verifyRelit(opened.scene, asset, options.verify, options.lamps, options.near, progress);
+    print(v);
+    return compareRelit(v);
+  }
+  lightScene(opened.scene, options.lights, "");
+  const Verification v = verifyLightmap(opened.scene, asset, options.verify, progress);
+  print(v);
+  std::fflush(stdout);  // pictures take longer
+  if (pictures) return compareLightmap(opened.scene, asset, v, options.verify, views, progress);
+  Comparison numbers;
+  numbers.numbers = toJson(v);
+  return numbers;
+}
+
 void verify(const VerifyCommandOptions& options, const std::string& typed, Progress& progress) {
   const auto opened = open(options.asset, {.normal_maps = true});
   if (!opened->asset)
@@ -46,16 +88,11 @@ void verify(const VerifyCommandOptions& options, const std::string& typed, Progr
   views.size = parseExtent(options.size, "--size");
   std::optional<ReportFolder> report;
   if (!options.report.empty()) report.emplace(options.report);
-  lightScene(opened->scene, options.lights, "");
-  const Verification v = verifyLightmap(opened->scene, *opened->asset, options.verify, progress);
-  print(v);
-  std::fflush(stdout);  // pictures take longer
-  if (!options.json.empty()) writeFileAtomically(options.json, toJson(v).dump(2) + "\n");
+  const Comparison comparison = verified(options, *opened, views, report.has_value(), progress);
+  if (!options.json.empty()) writeFileAtomically(options.json, comparison.numbers.dump(2) + "\n");
   if (!report) return;
   const VerifyFacts facts{options.asset, options.lights, opened->asset->generator, typed};
-  writeVerifyReport(report->draft(), facts,
-                    {compareLightmap(opened->scene, *opened->asset, v, options.verify, views, progress)},
-                    progress);
+  writeVerifyReport(report->draft(), facts, {comparison}, progress);
   report->publish();
   fmt::print("report: {}\n", (std::filesystem::path(options.report) / "report.html").string());
 }
@@ -64,18 +101,25 @@ void verify(const VerifyCommandOptions& options, const std::string& typed, Progr
 
 void addVerify(CLI::App& app, Program& program) {
   auto options = std::make_shared<VerifyCommandOptions>();
-  CLI::App* command = app.add_subcommand("verify",
-                                         "Compares a baked lightmap with path-traced truth.\nExample: relume "
-                                         "verify room.baked.glb -o verified");
-  command->add_option("ASSET", options->asset, "baked .glb with a lightmap")->required();
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "Compares a baked lightmap with path-traced truth, or the light that a lightpath\nmakes of "
+      "random lamps.\nExample: relume "
+      "verify room.baked.glb -o verified");
+  command->add_option("ASSET", options->asset, "baked .glb with a lightmap or a lightpath")->required();
   command->add_option("--lights", options->lights, "the light file that it was baked with");
-  command->add_option("--layer", options->verify.layer, "without it, the first lightmap");
+  command->add_option("--layer", options->verify.layer,
+                      "without it, the first lightmap, or the lightpath where there is none");
   command->add_option("--points", options->verify.points, "places on the surfaces")
       ->check(CLI::Range(1u, 10'000'000u))
       ->capture_default_str();
   command->add_option("--spp", options->verify.samples, "paths for each place")
       ->check(CLI::Range(32u, 1u << 24))
       ->capture_default_str();
+  command->add_option("--lamps", options->lamps, "random lamps to judge a lightpath by")
+      ->check(CLI::Range(1u, 10'000u))
+      ->capture_default_str();
+  command->add_flag("--near", options->near, "lamps nearer to a surface than an entry is wide");
   command->add_option("--seed", options->verify.seed, "of the random numbers")->capture_default_str();
   command->add_option("--json", options->json, "write what was measured to a file");
   command->add_option("-o,--output", options->report,

@@ -81,12 +81,16 @@ class Builder:
     def write(self, path):
         document = {k: v for k, v in self.json.items() if v != []}
         document["buffers"] = [{"byteLength": len(self.binary)}]
-        text = json.dumps(document).encode()
-        text += b" " * (-len(text) % 4)
-        body = bytes(self.binary) + b"\0" * (-len(self.binary) % 4)
-        chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(body), 0x004E4942) + body
-        pathlib.Path(path).write_bytes(struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks)
+        write_glb(path, document, bytes(self.binary))
         return str(path)
+
+
+def write_glb(path, document, binary):
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    body = binary + b"\0" * (-len(binary) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(body), 0x004E4942) + body
+    pathlib.Path(path).write_bytes(struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks)
 
 
 def read_glb(path):
