@@ -61,8 +61,6 @@ const Preset& presetOf(const QualitySettings& quality) {
 LightPathOptions optionsOf(const LayerContext& context, const Parameters& parameters) {
   const Preset& preset = presetOf(context.quality);
   LightPathOptions o;
-  o.placement = word(parameters, "entries") == "shot" ? transport::EntryPlacement::kShot
-                                                      : transport::EntryPlacement::kPatches;
   o.entries = given(parameters, "count", preset.entries);
   o.entry_samples = given(parameters, "samples", o.entry_samples);
   o.elements = preset.elements;
@@ -90,7 +88,6 @@ Coding codingOf(const LayerContext& context, const Parameters& parameters) {
 Digest keyOf(const LightPathOptions& o, const Coding& c) {
   return Hasher()
       .add(std::string_view("lightpath 1"))  // raise when results change
-      .add(o.placement)
       .add(o.entries)
       .add(o.entry_samples)
       .add(o.elements)

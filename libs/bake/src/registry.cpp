@@ -127,11 +127,6 @@ std::vector<LayerKind> makeRegistry() {
        .codec = "low rank by tiles and clusters",
        .parameters =
            {{"count", Type::kCount, "auto", {}, "entries of light; auto: 512, 1024, 2048, 4096 by quality"},
-            {"entries",
-             Type::kChoice,
-             "patches",
-             {"patches", "shot"},
-             "patches: parts of all surfaces; shot: points that rays meet from where lamps may be"},
             {"samples", Type::kCount, "16", {}, "points of an entry at which lamps light it"},
             {"size", Type::kCount, "256", {}, "exits of light along the side of a page, at most"},
             {"codec",

@@ -6,9 +6,10 @@
 //   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer. Sections 5 to 7 and 10.
 // Differs from it: an entry is a patch of surface and not a point, so that T has no spikes and no path is too
 // short to count; irradiance on it is a mean over fixed places; T comes from radiosity over small elements
-// and rays that gather at the exits instead of random walks from the entries (docs/light-paths.md has both
-// measured). EntryPlacement::kShot is the paper's form. Conventions: docs/concept.md. Light leaves surfaces
-// as from ideal diffuse reflectors, on both sides, as in lightmap.h. Limits: static surfaces only.
+// and rays that gather at the exits instead of random walks from the entries. Measured:
+// docs/light-paths.md. Entries that are shot from where lights may be ([USKP09] 7.1) are not there yet.
+// Conventions: docs/concept.md. Light leaves surfaces as from ideal diffuse reflectors, on both sides, as in
+// lightmap.h. Limits: static surfaces only.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -24,17 +25,9 @@
 
 namespace relume::transport {
 
-enum class EntryPlacement : std::uint8_t {
-  /// The whole surface in patches: about equal where lights may shine, larger elsewhere; none on two sides of
-  /// a wall.
-  kPatches,
-  kShot,  ///< points that rays hit from where lights may be; T_e / d(e) of [USKP09] 7.1
-};
-
 struct LightPathOptions {
-  EntryPlacement placement = EntryPlacement::kPatches;
   std::uint32_t entries = 1024;      ///< about so many; a few more where walls divide patches
-  std::uint32_t entry_samples = 16;  ///< places on an entry where its irradiance is taken; kShot: 1
+  std::uint32_t entry_samples = 16;  ///< places on an entry where its irradiance is taken
   std::uint32_t elements = 8192;     ///< of radiosity, about so many
   std::uint32_t element_rays = 512;  ///< of an element, at least
   std::uint32_t exit_side = 4;       ///< texels along an exit, which is a block of one chart; 1 to 64
@@ -55,7 +48,7 @@ struct EntrySample {
 struct Entries {
   std::uint32_t samples_each = 1;
   std::vector<EntrySample> samples;  ///< shape: [entries][samples_each]; equal shares of an entry's area
-  std::vector<float> area;           ///< m^2, by entry; kShot: 1 / d(e), which T holds already
+  std::vector<float> area;           ///< m^2, by entry;  / d(e), which T holds already
   std::vector<Point> centre;         ///< by entry: mean position, not always on the surface
   std::vector<Normal> normal;        ///< by entry: mean normal, unit
   std::size_t size() const { return area.size(); }
