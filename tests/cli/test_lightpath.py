@@ -154,7 +154,7 @@ class LightPath(test_cli.CliTest):
         self.assertIn("lightpath", self.small("--dry-run").stdout)
 
     def test_wrong_usage(self):
-        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=shot", "lightpath:bits=12"):
+        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=shot", "lightpath:size=0", "lightpath:count=inf", "lightpath:clusters=0", "lightpath:bits=12"):
             self.assertIn("lightpath", self.bake("--layer", layer, scene=self.room, expect=2).stderr)
 
 

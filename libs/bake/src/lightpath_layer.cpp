@@ -3,6 +3,8 @@
 //   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer. Sections 5 to 7.
 #include "lightpath_layer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -10,6 +12,7 @@
 #include "relume/asset/transfer.h"
 #include "relume/codec/encode_clustered_pca.h"
 #include "relume/codec/encode_tiles.h"
+#include "relume/core/error.h"
 #include "relume/core/kmeans.h"
 #include "relume/core/parallel.h"
 #include "relume/transport/light_paths.h"
@@ -44,10 +47,20 @@ struct Coding {
   std::uint32_t bits = 8;
 };
 
-template <class T>
-T given(const Parameters& parameters, const char* name, T otherwise) {
+double given(const Parameters& parameters, const char* name, double otherwise) {
   const auto found = parameters.find(name);
-  return found == parameters.end() ? otherwise : static_cast<T>(std::get<double>(found->second));
+  return found == parameters.end() ? otherwise : std::get<double>(found->second);
+}
+
+/// A whole number that is a number of something: none of it, or no end of it, is refused.
+std::uint32_t count(const Parameters& parameters, const char* name, std::uint32_t otherwise) {
+  constexpr double kMost = 65536;
+  if (!parameters.contains(name)) return otherwise;
+  const double value = given(parameters, name, 0);
+  if (!(value >= 1 && value <= kMost))
+    throw Error(ErrorCode::kUsage, "--layer lightpath", fmt::format("{}={} is out of range", name, value),
+                fmt::format("use 1 to {}", kMost));
+  return static_cast<std::uint32_t>(value);
 }
 
 const std::string& word(const Parameters& parameters, const char* name) {
@@ -61,11 +74,11 @@ const Preset& presetOf(const QualitySettings& quality) {
 LightPathOptions optionsOf(const LayerContext& context, const Parameters& parameters) {
   const Preset& preset = presetOf(context.quality);
   LightPathOptions o;
-  o.entries = given(parameters, "count", preset.entries);
-  o.entry_samples = given(parameters, "samples", o.entry_samples);
+  o.entries = count(parameters, "count", preset.entries);
+  o.entry_samples = count(parameters, "samples", o.entry_samples);
   o.elements = preset.elements;
   o.exit_rays = context.quality.exact() ? context.quality.max_samples : preset.exit_rays;
-  const auto across = given(parameters, "size", 256u);
+  const auto across = count(parameters, "size", 256);
   const auto side = static_cast<std::uint32_t>(std::max(context.texels.width, context.texels.height));
   o.exit_side = std::clamp((side + across - 1) / across, 1u, 64u);
   o.materials = word(parameters, "materials") == "lambert" ? transport::Materials::kLambert
@@ -77,8 +90,8 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
 Coding codingOf(const LayerContext& context, const Parameters& parameters) {
   Coding coding;
   coding.clustered_pca = word(parameters, "codec") == "cpca";
-  coding.clusters = given(parameters, "clusters", std::size_t{0});
-  coding.components = given(parameters, "components", std::size_t{0});
+  coding.clusters = count(parameters, "clusters", 0);
+  coding.components = count(parameters, "components", 0);
   coding.error = given(parameters, "error",
                        coding.components > 0 || coding.clustered_pca ? 0 : presetOf(context.quality).error);
   coding.bits = word(parameters, "bits") == "16" ? 16 : 8;
