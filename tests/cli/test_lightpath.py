@@ -140,6 +140,17 @@ class LightPath(test_cli.CliTest):
         self.light(self.lamp())
         self.assertGreater(sum(self.relit()[0]), 0)
 
+    def test_entries_shot_from_boxes_where_lamps_may_be(self):
+        document, binary = glb.read_glb(self.room)
+        document["nodes"].append({"name": "lamps", "translation": [-0.8, 1.6, 0.3], "extras": {"relume": {"lightBox": [0.2, 0.2, 0.2]}}})
+        document["scenes"][0]["nodes"].append(len(document["nodes"]) - 1)
+        glb.write_glb(self.room, document, binary)
+        self.light(self.lamp())
+        self.small()
+        patches = sum(map(sum, self.relit()))
+        self.bake("--layer", "lightpath:count=1024,size=64,error=0.03,entries=shot", "--quality", "draft", "--atlas-size", 128, scene=self.room)
+        self.assertAlmostEqual(sum(map(sum, self.relit())), patches, delta=0.05 * patches)
+
     def test_inspect_and_statistics_tell_its_size(self):
         stats = self.folder / "s.json"
         self.small("--stats", stats)
@@ -154,7 +165,7 @@ class LightPath(test_cli.CliTest):
         self.assertIn("lightpath", self.small("--dry-run").stdout)
 
     def test_wrong_usage(self):
-        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=shot", "lightpath:size=0", "lightpath:count=inf", "lightpath:clusters=0", "lightpath:bits=12"):
+        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=thrown", "lightpath:entries=shot,samples=4", "lightpath:places=0", "lightpath:aim=left", "lightpath:size=0", "lightpath:count=inf", "lightpath:clusters=0", "lightpath:bits=12"):
             self.assertIn("lightpath", self.bake("--layer", layer, scene=self.room, expect=2).stderr)
 
 

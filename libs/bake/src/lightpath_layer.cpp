@@ -75,7 +75,16 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
   const Preset& preset = presetOf(context.quality);
   LightPathOptions o;
   o.entries = count(parameters, "count", preset.entries);
+  if (word(parameters, "entries") == "shot") {
+    o.placement = transport::EntryPlacement::kShot;
+    if (parameters.contains("samples"))
+      throw Error(ErrorCode::kUsage, "--layer lightpath", "entries that are shot are points, with one sample",
+                  "leave samples= away, or take entries=patches");
+  }
   o.entry_samples = count(parameters, "samples", o.entry_samples);
+  o.test_points = count(parameters, "places", o.test_points);
+  if (const std::string& aim = word(parameters, "aim"); aim != "all")
+    o.aim = Direction(0, aim == "down" ? -1 : 1, 0);
   o.elements = preset.elements;
   o.exit_rays = context.quality.exact() ? context.quality.max_samples : preset.exit_rays;
   const auto across = count(parameters, "size", 256);
@@ -83,6 +92,7 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
   o.exit_side = std::clamp((side + across - 1) / across, 1u, 64u);
   o.materials = word(parameters, "materials") == "lambert" ? transport::Materials::kLambert
                                                            : transport::Materials::kFull;
+  o.light_boxes = context.tracer.scene().light_boxes;
   o.seed = context.seed;
   return o;
 }
@@ -99,9 +109,14 @@ Coding codingOf(const LayerContext& context, const Parameters& parameters) {
 }
 
 Digest keyOf(const LightPathOptions& o, const Coding& c) {
-  return Hasher()
+  Hasher hasher;
+  for (const Box3& box : o.light_boxes) hasher.add(box.lo).add(box.hi);
+  return hasher
       .add(std::string_view("lightpath 1"))  // raise when results change
       .add(o.entries)
+      .add(o.placement)
+      .add(o.test_points)
+      .add(o.aim.value_or(Direction(0)))
       .add(o.entry_samples)
       .add(o.elements)
       .add(o.element_rays)

@@ -11,6 +11,7 @@ Scene import(const Document& document, Warnings& warnings, const ImportOptions& 
   const std::vector<TextureSource> sources = importMaterials(access, scene, warnings);
   importMeshes(access, nodes, options, scene, warnings);
   importLights(access, nodes, scene);
+  importLightBoxes(access, nodes, scene);
   importCameras(access, nodes, scene);
   importImages(access, sources, options, scene, warnings);
   if (scene.instances.empty())

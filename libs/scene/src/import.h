@@ -24,6 +24,8 @@ std::vector<PlacedNode> placeNodes(Access& access, Warnings& warnings);
 /// Cameras and punctual lights that nodes carry; the scale of nodes does not count.
 void importCameras(Access& access, const std::vector<PlacedNode>& nodes, Scene& scene);
 void importLights(Access& access, const std::vector<PlacedNode>& nodes, Scene& scene);
+/// extras.relume.lightBox of nodes: [x, y, z], lengths of a box about the node along its axes.
+void importLightBoxes(Access& access, const std::vector<PlacedNode>& nodes, Scene& scene);
 
 /// All materials of the document and the default one; the textures that they name, not yet decoded. Scene
 /// texture t comes of the result's image t (kNone: none) and is normal-mapped where `normal` says so.

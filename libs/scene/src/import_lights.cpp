@@ -68,6 +68,22 @@ void importLights(Access& access, const std::vector<PlacedNode>& nodes, Scene& s
   }
 }
 
+void importLightBoxes(Access& access, const std::vector<PlacedNode>& nodes, Scene& scene) {
+  for (const PlacedNode& node : nodes) {
+    const Value notes = access.root()["nodes"].at(node.index).notes();
+    if (!notes || !notes["lightBox"]) continue;
+    const Vec3 size = notes["lightBox"].vec3(Vec3(0));
+    if (!glm::all(glm::greaterThan(size, Vec3(0))))
+      notes["lightBox"].fail(ErrorCode::kInvalidValue, "is no box of lengths above 0", "write [x, y, z]");
+    Box3 box;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 sign(corner & 1 ? 0.5f : -0.5f, corner & 2 ? 0.5f : -0.5f, corner & 4 ? 0.5f : -0.5f);
+      box.add(Point(node.world_from_local * Vec4(sign * size, 1.0f)));
+    }
+    scene.light_boxes.push_back(box);
+  }
+}
+
 void importCameras(Access& access, const std::vector<PlacedNode>& nodes, Scene& scene) {
   const Value cameras = access.root()["cameras"];
   for (const PlacedNode& node : nodes) {

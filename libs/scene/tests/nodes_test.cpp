@@ -278,6 +278,23 @@ TEST(Lights, BelongToGroups) {
   EXPECT_EQ(lightGroups(scene), (std::vector<std::string>{"hall", "stage", "c", kEnvironmentGroup}));
 }
 
+TEST(Lights, MayBeInBoxesOfTheirAuthor) {
+  GltfBuilder b;
+  b.triangle();
+  const auto box = [](const Json& size) { return Json{{"relume", {{"lightBox", size}}}}; };
+  b.node({{"extras", box({2, 1, 4})}, {"translation", {1, 0, 0}}, {"scale", {1, 2, 1}}});
+  b.node({{"extras", box({2, 2, 2})}, {"rotation", {0, std::sin(M_PI / 8), 0, std::cos(M_PI / 8)}}});
+  const Scene scene = b.scene();
+  ASSERT_EQ(scene.light_boxes.size(), 2u);
+  expectNear(scene.light_boxes[0].lo, {0, -1, -2});
+  expectNear(scene.light_boxes[0].hi, {2, 1, 2});
+  const float turned = std::sqrt(2.0f);  // half the diagonal of a square of 2 m
+  expectNear(scene.light_boxes[1].hi, {turned, 1, turned});
+
+  b.node({{"extras", box({2, 0, 2})}});
+  EXPECT_EQ(errorOf([&] { b.scene(); }), "invalid-value");
+}
+
 TEST(Cameras, ArePlaced) {
   GltfBuilder b;
   b.triangle();

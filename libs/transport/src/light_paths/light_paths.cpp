@@ -18,7 +18,9 @@
 #include "light_paths/exit_rays.h"
 #include "light_paths/exit_tiles.h"
 #include "light_paths/light_search.h"
+#include "light_paths/piece_entries.h"
 #include "light_paths/places.h"
+#include "light_paths/shot_entries.h"
 #include "light_paths/vector_row.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
@@ -47,6 +49,8 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
   require(o.entries > 0 && o.entries <= 1u << 16, "entries are not between 1 and 65536", "1024 suit a hall");
   require(o.entry_samples > 0 && o.entry_samples <= 1024, "samples of an entry are not between 1 and 1024",
           "16 are enough for lights that keep away from walls");
+  require(o.test_points > 0 && o.test_points <= 1u << 16, "test points are not between 1 and 65536",
+          "128 do");
   require(o.elements > 0 && o.elements <= 1u << 16, "elements are not between 1 and 65536", "8192 do");
   require(o.element_rays > 0 && o.exit_rays > 0, "no rays", "ask for some hundreds");
   require(o.exit_rays <= kMaxSequence, "more than 65536 rays of an exit", "1024 do");
@@ -56,7 +60,9 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
           "256 exits and an overlap of 0.3 are usual");
   if (texels.points.empty())
     throw Error(ErrorCode::kEmptyScene, "light paths", "there are no texels", "bake a static mesh");
-  return o;
+  LightPathOptions options = o;
+  if (o.placement == EntryPlacement::kShot) options.entry_samples = 1;
+  return options;
 }
 
 std::vector<Box3> boxesOf(const LightPathOptions& options, const atlas::Texels& texels) {
@@ -161,7 +167,11 @@ struct LightPaths::Impl {
       pieces = refinedPieces(surface, sides, coarse, view.importance(coarse.all, kLeastPieces), most);
     }
     const LightView view(tracer, pieces.all, test, progress);
-    placeEntries(view, progress);
+    if (options.placement == EntryPlacement::kShot) {
+      shootAtPieces(progress);
+    } else {
+      placeEntries(view, progress);
+    }
     placeElements(view, progress);
   }
 
@@ -192,22 +202,72 @@ struct LightPaths::Impl {
     for (std::size_t i = 0; i < pieces.size(); ++i)
       important += static_cast<double>(pieces.all[i].area * importance[i]);
     spacing = static_cast<float>(std::sqrt(important / static_cast<double>(clusters.size())));
-    entry_of_piece = clusters.of;
+    piece_entries = PieceEntries::ofPatches(clusters.of);
     std::vector<std::uint32_t> of_side(sides.size(), scene::kNone);
     for (std::size_t side = 0; side < of_side.size(); ++side)
-      if (pieces.of_side[side] != scene::kNone) of_side[side] = entry_of_piece[pieces.of_side[side]];
+      if (pieces.of_side[side] != scene::kNone) of_side[side] = clusters.of[pieces.of_side[side]];
     const Members members = membersOf(of_side, clusters.size());
     entry_places = placesOn(texels, sides, placeWeights(), members, options.entry_samples, options.seed);
     entries.samples_each = options.entry_samples;
     for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
     entries.area.assign(clusters.size(), 0.0f);
     for (std::size_t i = 0; i < pieces.size(); ++i)
-      if (entry_of_piece[i] != scene::kNone) entries.area[entry_of_piece[i]] += pieces.all[i].area;
+      if (clusters.of[i] != scene::kNone) entries.area[clusters.of[i]] += pieces.all[i].area;
     for (const Feature& c : clusters.centre) {
       entries.centre.emplace_back(c[0], c[1], c[2]);
       const Vec3 n(c[3], c[4], c[5]);
       entries.normal.push_back(glm::length(n) > 0 ? glm::normalize(n) : Normal(0, 0, 1));
     }
+  }
+
+  ShotRays testRays(Progress& progress) const {
+    const std::uint32_t count = std::min(options.test_points, options.entries);
+    ShotRays rays{.from = {}, .each = 1, .aim = options.aim};
+    for (const Light& light : findLights(tracer, boxes, count, {}, options.seed, progress))
+      rays.from.push_back(light.position);
+    if (rays.from.empty())
+      throw Error(ErrorCode::kEmptyScene, "light paths", "there is no room for lights to shoot entries from",
+                  "take entries=patches");
+    rays.each = raysForEntries(tracer, rays, options.entries, options.seed);
+    return rays;
+  }
+
+  /// The side of a texel that a point lies on; scene::kNone: none that light is known of.
+  std::uint32_t sideOf(const ShotEntry& e) const {
+    const std::uint32_t point = lookup.point(e.where);
+    if (point == scene::kNone) return scene::kNone;
+    const Normal front = scene::geometricNormal(tracer.scene(), e.where.instance, e.where.triangle);
+    if (glm::dot(front, e.normal) < 0) return sides.answering(point | kBackBit);
+    return sides.answering(exposure.answering(point, e.from, e.position));
+  }
+
+  void shootAtPieces(Progress& progress) {
+    // What of a piece can be lit: the share of a unit of light on one point of it.
+    std::vector<double> area(pieces.size(), 0.0);
+    for (std::size_t side = 0; side < sides.size(); ++side)
+      if (pieces.of_side[side] != scene::kNone)
+        area[pieces.of_side[side]] += static_cast<double>(sides.area(side));
+    std::vector<EntryShare> shares;
+    for (const ShotEntry& e : shootEntries(tracer, testRays(progress), options.seed, progress)) {
+      const std::uint32_t side = sideOf(e), piece = side == scene::kNone ? side : pieces.of_side[side];
+      if (piece == scene::kNone || !(area[piece] > 0)) continue;
+      const auto entry = static_cast<std::uint32_t>(entries.size());
+      shares.push_back(
+          {piece, entry, static_cast<float>(1.0 / (static_cast<double>(e.density) * area[piece]))});
+      const Normal shading = sides.shadingNormal(side);
+      entry_places.push_back({e.position, shading, e.normal});
+      entries.samples.push_back({e.position, shading});
+      entries.area.push_back(1.0f / e.density);
+      entries.centre.push_back(e.position), entries.normal.push_back(shading);
+    }
+    if (entries.size() == 0)
+      throw Error(ErrorCode::kEmptyScene, "light paths", "no entry could be shot at a surface with texels",
+                  "take entries=patches");
+    entries.samples_each = 1;
+    piece_entries = PieceEntries(pieces.size(), std::move(shares));
+    double seen = 0;
+    for (const float a : entries.area) seen += static_cast<double>(a);
+    spacing = static_cast<float>(std::sqrt(seen / static_cast<double>(entries.size())));
   }
 
   void placeElements(const LightView& light, Progress& progress) {
@@ -221,12 +281,13 @@ struct LightPaths::Impl {
   /// What elements send out of light on entries.
   void fill(std::size_t block, std::span<float> radiosity) const {
     for (std::size_t i = 0; i < elements.size(); ++i)
-      for (const Weight& w : elements.sourcesOf(i)) {
-        const std::size_t entry = entry_of_piece[w.index];
-        if (entry / ElementLight::kBlock != block) continue;
-        float* at = radiosity.data() + i * ElementLight::kRow + entry % ElementLight::kBlock;
-        for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(c) * ElementLight::kBlock] += w.value[c];
-      }
+      for (const Weight& w : elements.sourcesOf(i))
+        for (const EntryShare& s : piece_entries.of(w.index)) {
+          if (s.entry / ElementLight::kBlock != block) continue;
+          float* at = radiosity.data() + i * ElementLight::kRow + s.entry % ElementLight::kBlock;
+          for (int c = 0; c < 3; ++c)
+            at[static_cast<std::size_t>(c) * ElementLight::kBlock] += s.value * w.value[c];
+        }
   }
 
   void rows(std::size_t tile, std::span<float> out) const {
@@ -243,9 +304,9 @@ struct LightPaths::Impl {
       exit_rays.look(gathered_from[of[r]], view);
       float* row = out.data() + r * 3 * columns;
       for (const Weight& w : view.direct)
-        for (std::size_t c = 0; c < 3; ++c)
-          if (entry_of_piece[w.index] != scene::kNone)
-            row[c * columns + entry_of_piece[w.index]] += w.value[static_cast<int>(c)];
+        for (const EntryShare& s : piece_entries.of(w.index))
+          for (std::size_t c = 0; c < 3; ++c)
+            row[c * columns + s.entry] += s.value * w.value[static_cast<int>(c)];
       weights.insert(weights.end(), view.reflected.begin(), view.reflected.end());
       first.push_back(weights.size());
     }
@@ -307,8 +368,8 @@ struct LightPaths::Impl {
       on_piece.assign(lights.size() * pieces.size(), Vec3(0.0f));
       for (std::size_t l = 0; l < lights.size(); ++l)
         for (std::size_t p = 0; p < pieces.size(); ++p)
-          if (entry_of_piece[p] != scene::kNone)
-            on_piece[l * pieces.size() + p] = on_entry[l * entries.size() + entry_of_piece[p]];
+          for (const EntryShare& s : piece_entries.of(p))
+            on_piece[l * pieces.size() + p] += s.value * on_entry[l * entries.size() + s.entry];
     } else {
       const std::vector<Place> places =
           placesOn(texels, sides, placeWeights(), membersOf(pieces.of_side, pieces.size()), kPiecePlaces,
@@ -368,7 +429,7 @@ struct LightPaths::Impl {
   const Patches exit_patches;
   const std::vector<std::uint32_t> gathered_from;  // by exit
   const SampleTable directions;
-  std::vector<std::uint32_t> entry_of_piece;
+  PieceEntries piece_entries;
   std::vector<Place> entry_places;
   Entries entries;
   Exits exits;

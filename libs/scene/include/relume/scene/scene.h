@@ -109,6 +109,7 @@ struct Scene {
   std::vector<Material> materials;  ///< last: glTF's default material
   std::vector<Texture> textures;
   std::vector<Light> lights;
+  std::vector<Box3> light_boxes;  ///< where lights may be, as the author says; empty: nobody said
   Environment environment;  ///< glTF has none: dark until somebody sets it
   std::vector<Camera> cameras;
 

@@ -7,12 +7,14 @@
 // Differs from it: an entry is a patch of surface and not a point, so that T has no spikes and no path is too
 // short to count; irradiance on it is a mean over fixed places; T comes from radiosity over small elements
 // and rays that gather at the exits instead of random walks from the entries. Measured:
-// docs/light-paths.md. Entries that are shot from where lights may be ([USKP09] 7.1) are not there yet.
+// docs/light-paths.md. Entries may also be points that are shot from where lights may be ([USKP09] 7.1): then
+// T holds 1 / d(e), d their density, and light on a point counts for the small piece of surface about it.
 // Conventions: docs/concept.md. Light leaves surfaces as from ideal diffuse reflectors, on both sides, as in
 // lightmap.h. Limits: static surfaces only.
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +27,18 @@
 
 namespace relume::transport {
 
+enum class EntryPlacement : std::uint8_t {
+  kPatches,  ///< parts of all surfaces
+  kShot,     ///< points where rays from test points end ([USKP09] 7.1)
+};
+
 struct LightPathOptions {
-  std::uint32_t entries = 1024;      ///< about so many; a few more where walls divide patches
-  std::uint32_t entry_samples = 16;  ///< places on an entry where its irradiance is taken
+  std::uint32_t entries = 1024;  ///< about so many; a few more where walls divide patches
+  EntryPlacement placement = EntryPlacement::kPatches;
+  std::uint32_t entry_samples = 16;  ///< places on an entry where its irradiance is taken; kShot: always 1
+  std::uint32_t test_points = 128;   ///< of kShot, spread over the space where lights may be
+  /// Of kShot: about which way lights shine, cosine-weighted; none: all around.
+  std::optional<Direction> aim;
   std::uint32_t elements = 8192;     ///< of radiosity, about so many
   std::uint32_t element_rays = 512;  ///< of an element, at least
   std::uint32_t exit_side = 4;       ///< texels along an exit, which is a block of one chart; 1 to 64
@@ -48,7 +59,7 @@ struct EntrySample {
 struct Entries {
   std::uint32_t samples_each = 1;
   std::vector<EntrySample> samples;  ///< shape: [entries][samples_each]; equal shares of an entry's area
-  std::vector<float> area;           ///< m^2, by entry;  / d(e), which T holds already
+  std::vector<float> area;           ///< m^2, by entry; of kShot 1 / d(e), which T holds already
   std::vector<Point> centre;         ///< by entry: mean position, not always on the surface
   std::vector<Normal> normal;        ///< by entry: mean normal, unit
   std::size_t size() const { return area.size(); }
@@ -100,7 +111,7 @@ class LightPaths {
  public:
   /// Places entries and exits and solves what elements send out. Keeps references. Bits do not depend on the
   /// number of threads. Throws Error kUsage for options that make no sense, kEmptyScene where there are no
-  /// texels, kInterrupted.
+  /// texels or no room for the test points of kShot, kInterrupted.
   LightPaths(const trace::Tracer& tracer, const atlas::Atlas& atlas, const atlas::Texels& texels,
              const LightPathOptions& options, Progress& progress);
   ~LightPaths();
