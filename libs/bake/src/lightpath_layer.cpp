@@ -82,6 +82,10 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
                   "leave samples= away, or take entries=patches");
   }
   o.entry_samples = count(parameters, "samples", o.entry_samples);
+  o.transfer = word(parameters, "transfer") == "walks" ? transport::TransferBy::kWalks
+                                                       : transport::TransferBy::kGathering;
+  o.walks = count(parameters, "walks", o.walks);
+  o.walk_seed = context.seed;
   o.test_points = count(parameters, "places", o.test_points);
   if (const std::string& aim = word(parameters, "aim"); aim != "all")
     o.aim = Direction(0, aim == "down" ? -1 : 1, 0);
@@ -118,6 +122,8 @@ Digest keyOf(const LightPathOptions& o, const Coding& c) {
       .add(o.test_points)
       .add(o.aim.value_or(Direction(0)))
       .add(o.entry_samples)
+      .add(o.transfer)
+      .add(o.walks)
       .add(o.elements)
       .add(o.element_rays)
       .add(o.exit_side)

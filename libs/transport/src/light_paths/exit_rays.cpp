@@ -26,6 +26,7 @@ void ExitRays::look(std::size_t exit, ExitView& view) {
                  static_cast<std::uint32_t>(scene_.samples.x.size() / SampleTable::kColumns));
   scene_.exits.forEachGroup(texels, exit, [&](std::span<const std::uint32_t> group) {
     rays_.trace(group, Side::kFront, each, [&](std::uint32_t texel, std::uint32_t, const SideRays::End& end) {
+      if (end.distance < scene_.near) return;
       const std::uint32_t side = scene_.sides.answering(end.surface);
       if (side == scene::kNone || scene_.pieces.of_side[side] == scene::kNone) return;
       const float area = texels.points[group[texel]].area;

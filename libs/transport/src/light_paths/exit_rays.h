@@ -27,6 +27,7 @@ struct ExitScene {
   const SampleTable& samples;
   std::uint32_t rays;  ///< of an exit, at least
   std::uint64_t seed;
+  float near;  ///< metres: nearer ends are left out
 };
 
 /// One thread's.

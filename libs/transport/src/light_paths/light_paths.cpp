@@ -18,6 +18,7 @@
 #include "light_paths/exit_rays.h"
 #include "light_paths/exit_tiles.h"
 #include "light_paths/light_search.h"
+#include "light_paths/light_walks.h"
 #include "light_paths/piece_entries.h"
 #include "light_paths/places.h"
 #include "light_paths/shot_entries.h"
@@ -49,6 +50,8 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
   require(o.entries > 0 && o.entries <= 1u << 16, "entries are not between 1 and 65536", "1024 suit a hall");
   require(o.entry_samples > 0 && o.entry_samples <= 1024, "samples of an entry are not between 1 and 1024",
           "16 are enough for lights that keep away from walls");
+  require(o.near >= 0.0f && o.near < kInfinity, "the way that is near is no length", "take half a metre");
+  require(o.walks > 0 && o.walks <= 1u << 16, "walks of an entry are not between 1 and 65536", "16 do");
   require(o.test_points > 0 && o.test_points <= 1u << 16, "test points are not between 1 and 65536",
           "128 do");
   require(o.elements > 0 && o.elements <= 1u << 16, "elements are not between 1 and 65536", "8192 do");
@@ -132,13 +135,18 @@ struct LightPaths::Impl {
         gathered_from(gatheredFrom(exit_patches, sides)),
         directions(firstExitRays(), std::max(firstExitRays(), std::bit_ceil(options.exit_rays)),
                    options.seed + 0x9e3779b97f4a7c15u, BlockSamples::kShared),
-        exit_scene{surface,    exit_patches,      sides,       pieces, elements, reflectance,
-                   directions, options.exit_rays, options.seed} {
+        exit_scene{surface,    exit_patches,      sides,        pieces,      elements, reflectance,
+                   directions, options.exit_rays, options.seed, options.near} {
     placeExits(progress);
     placeAll(progress);
-    reflected = std::make_unique<ElementLight>(
-        elements, entries.size(),
-        [&](std::size_t block, std::span<float> radiosity) { fill(block, radiosity); }, kResidual, progress);
+    if (options.transfer == TransferBy::kWalks) {
+      virtual_lights = walk({surface, sides, reflectance}, walk_starts, options.walk_seed, progress);
+    } else {
+      reflected = std::make_unique<ElementLight>(
+          elements, entries.size(),
+          [&](std::size_t block, std::span<float> radiosity) { fill(block, radiosity); }, kResidual,
+          progress);
+    }
     ray_count = sides.rays();
   }
 
@@ -208,6 +216,8 @@ struct LightPaths::Impl {
       if (pieces.of_side[side] != scene::kNone) of_side[side] = clusters.of[pieces.of_side[side]];
     const Members members = membersOf(of_side, clusters.size());
     entry_places = placesOn(texels, sides, placeWeights(), members, options.entry_samples, options.seed);
+    if (options.transfer == TransferBy::kWalks)
+      walk_starts = startsOnPatches(surface, sides, members, options.walks, options.walk_seed);
     entries.samples_each = options.entry_samples;
     for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
     entries.area.assign(clusters.size(), 0.0f);
@@ -232,15 +242,6 @@ struct LightPaths::Impl {
     return rays;
   }
 
-  /// The side of a texel that a point lies on; scene::kNone: none that light is known of.
-  std::uint32_t sideOf(const ShotEntry& e) const {
-    const std::uint32_t point = lookup.point(e.where);
-    if (point == scene::kNone) return scene::kNone;
-    const Normal front = scene::geometricNormal(tracer.scene(), e.where.instance, e.where.triangle);
-    if (glm::dot(front, e.normal) < 0) return sides.answering(point | kBackBit);
-    return sides.answering(exposure.answering(point, e.from, e.position));
-  }
-
   void shootAtPieces(Progress& progress) {
     // What of a piece can be lit: the share of a unit of light on one point of it.
     std::vector<double> area(pieces.size(), 0.0);
@@ -249,11 +250,15 @@ struct LightPaths::Impl {
         area[pieces.of_side[side]] += static_cast<double>(sides.area(side));
     std::vector<EntryShare> shares;
     for (const ShotEntry& e : shootEntries(tracer, testRays(progress), options.seed, progress)) {
-      const std::uint32_t side = sideOf(e), piece = side == scene::kNone ? side : pieces.of_side[side];
+      const float length = glm::length(e.position - e.from);
+      const std::uint32_t side = sideWhere(surface, sides, {e.from, (e.position - e.from) / length, length},
+                                           {.where = e.where, .t = length}),
+                          piece = side == scene::kNone ? side : pieces.of_side[side];
       if (piece == scene::kNone || !(area[piece] > 0)) continue;
       const auto entry = static_cast<std::uint32_t>(entries.size());
       shares.push_back(
           {piece, entry, static_cast<float>(1.0 / (static_cast<double>(e.density) * area[piece]))});
+      walk_starts.push_back({entry, side, e.position, e.normal, 1.0f / e.density, options.walks});
       const Normal shading = sides.shadingNormal(side);
       entry_places.push_back({e.position, shading, e.normal});
       entries.samples.push_back({e.position, shading});
@@ -296,6 +301,12 @@ struct LightPaths::Impl {
     const std::size_t columns = entries.size();
     RELUME_CHECK_EQ(out.size(), of.size() * 3 * columns);
     std::fill(out.begin(), out.end(), 0.0f);
+    if (options.transfer == TransferBy::kWalks) {
+      for (std::size_t r = 0; r < of.size(); ++r)
+        connect(surface, virtual_lights, exit_patches, gathered_from[of[r]], options.near, options.walk_seed,
+                columns, out.subspan(r * 3 * columns, 3 * columns));
+      return;
+    }
     ExitRays exit_rays(exit_scene);
     ExitView view;
     std::vector<Weight> weights;
@@ -336,6 +347,31 @@ struct LightPaths::Impl {
     std::array<float, ElementLight::kRow> sum;
     for (std::size_t c = 0; c < 3; ++c) row[c].store(sum.data() + c * kBlock);
     return sum;
+  }
+
+  std::vector<Vec3> nearShares(Progress& progress) const {
+    constexpr std::uint32_t kMost = 256;
+    const std::uint32_t each = std::min(std::bit_ceil(options.exit_rays), kMost);
+    const SampleTable samples(each, each, options.seed + 3, BlockSamples::kShared);
+    std::vector<Vec3> share(texels.points.size(), Vec3(0.0f));
+    const Stage stage(progress, "short ways", groups.tiles());
+    parallelFor(
+        groups.tiles(), 1,
+        [&](std::size_t begin, std::size_t end) {
+          SideRays rays(surface, samples, options.seed + 3, Alignment::kTurnedByBlock);
+          for (std::size_t tile = begin; tile < end; ++tile)
+            groups.forEachGroup(tile, [&](std::span<const std::uint32_t> group) {
+              rays.trace(group, Side::kFront, each,
+                         [&](std::uint32_t texel, std::uint32_t, const SideRays::End& end_of_ray) {
+                           const std::uint32_t side = sides.answering(end_of_ray.surface);
+                           if (side == scene::kNone || !(end_of_ray.distance < options.near)) return;
+                           share[group[texel]] +=
+                               reflectance.value[sides.point(side)] / static_cast<float>(each);
+                         });
+            });
+        },
+        &progress);
+    return share;
   }
 
   /// Of lights, means over `each` places of every group. Shape: [lights][groups]
@@ -435,7 +471,9 @@ struct LightPaths::Impl {
   Exits exits;
   ExitTiles tiles;
   Elements elements;
-  std::unique_ptr<ElementLight> reflected;
+  std::unique_ptr<ElementLight> reflected;  // of kGathering
+  std::vector<WalkStart> walk_starts;       // of kWalks
+  std::vector<VirtualLight> virtual_lights;
   const ExitScene exit_scene;
   float spacing = 0;
   std::uint64_t ray_count = 0;
@@ -453,12 +491,14 @@ const ExitTiles& LightPaths::tiles() const { return impl_->tiles; }
 float LightPaths::spacing() const { return impl_->spacing; }
 std::uint64_t LightPaths::bytes() const {
   const Impl& i = *impl_;
-  return i.reflected->bytes() +
+  return (i.reflected ? i.reflected->bytes() : i.virtual_lights.size() * sizeof(VirtualLight)) +
          i.sides.size() * (std::uint64_t{i.sides.raysEach()} * sizeof(SideOfTexel) + 12);
 }
 std::uint64_t LightPaths::rays() const { return impl_->ray_count; }
 
 void LightPaths::rows(std::size_t tile, std::span<float> out) const { impl_->rows(tile, out); }
+
+std::vector<Vec3> LightPaths::nearShares(Progress& progress) const { return impl_->nearShares(progress); }
 
 LightSet LightPaths::lights(std::uint32_t count, const LightPlaces& places, std::uint64_t seed,
                             Progress& progress) const {

@@ -32,6 +32,11 @@ enum class EntryPlacement : std::uint8_t {
   kShot,     ///< points where rays from test points end ([USKP09] 7.1)
 };
 
+enum class TransferBy : std::uint8_t {
+  kGathering,  ///< rays from the exits, radiosity of elements
+  kWalks,      ///< random walks from the entries, connected to all exits ([USKP09] 7.2): slow, for comparison
+};
+
 struct LightPathOptions {
   std::uint32_t entries = 1024;  ///< about so many; a few more where walls divide patches
   EntryPlacement placement = EntryPlacement::kPatches;
@@ -41,10 +46,15 @@ struct LightPathOptions {
   std::optional<Direction> aim;
   std::uint32_t elements = 8192;     ///< of radiosity, about so many
   std::uint32_t element_rays = 512;  ///< of an element, at least
-  std::uint32_t exit_side = 4;       ///< texels along an exit, which is a block of one chart; 1 to 64
-  std::uint32_t exit_rays = 1024;    ///< of an exit, rounded up to 2^k for each of its texels
-  std::uint32_t tile_exits = 256;    ///< exits of a tile, on average, without overlap
-  float tile_overlap = 0.3f;         ///< exits that a tile shares with its neighbours, as a share of its own
+  TransferBy transfer = TransferBy::kGathering;
+  std::uint32_t walks = 16;     ///< of an entry, of kWalks
+  std::uint64_t walk_seed = 1;  ///< other walks from the same entries
+  /// Metres: light whose last way to an exit is shorter is not in T ([USKP09] 7.2); nearShares tells of it.
+  float near = 0.0f;
+  std::uint32_t exit_side = 4;     ///< texels along an exit, which is a block of one chart; 1 to 64
+  std::uint32_t exit_rays = 1024;  ///< of an exit, rounded up to 2^k for each of its texels
+  std::uint32_t tile_exits = 256;  ///< exits of a tile, on average, without overlap
+  float tile_overlap = 0.3f;       ///< exits that a tile shares with its neighbours, as a share of its own
   Materials materials = Materials::kFull;
   std::vector<Box3> light_boxes;  ///< where lights may be; none: rooms, or all free space if there are none
   std::uint64_t seed = 1;
@@ -129,6 +139,11 @@ class LightPaths {
   /// The transfer to the exits of a tile, not blended. out: shape [rows of tile][3 channels][entries].
   /// From many threads at once; the same bits every time.
   void rows(std::size_t tile, std::span<float> out) const;
+
+  /// By index into Texels::points, RGB: the cosine-weighted share of directions in which a surface is nearer
+  /// than options.near, times the reflectance of that surface: what T leaves out of light that is the same
+  /// all around. By as many rays of each texel as an exit has, at most 256; seen from what an exit sees.
+  std::vector<Vec3> nearShares(Progress& progress) const;
 
   /// White point and spot lights of intensity 1 in free space, in `light_boxes` where there are any;
   /// otherwise in rooms, or in the open where there are no rooms. Fewer than `count`, perhaps none, where
