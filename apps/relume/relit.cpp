@@ -55,7 +55,8 @@ std::vector<Irradiance> relit(const asset::Asset& asset, const asset::Layer& lay
   relight::TransferRelighter relighter(asset, layer);
   relight::VisibilitySource visibility;
   if (how.tracer)
-    visibility = tracedVisibility(*how.tracer, relighter.entryPoints(), relighter.entryNormals(), how.lights);
+    visibility = tracedVisibility(*how.tracer, relighter.visibilityPoints(), relighter.visibilityNormals(),
+                                  how.lights);
   const std::span<const Irradiance> texels = relighter.evaluate(how.lights, visibility);
   return {texels.begin(), texels.end()};
 }

@@ -69,6 +69,24 @@ void checkExits(const Exits& exits, std::size_t rows, const AtlasTable& atlas, c
   }
 }
 
+constexpr float kMostNear = 250.0f / 255.0f;  // so that 1 / (1 - share) stays sound
+
+void checkNear(const NearShares& shares, std::size_t texels, const std::string& layer) {
+  if (!shares.empty() && shares.size() != texels)
+    corrupt(layer, fmt::format("it has {} shares of short ways for {} texels", shares.size(), texels));
+  for (const Vec3& s : shares)
+    for (int c = 0; c < 3; ++c)
+      if (!(s[c] >= 0 && s[c] < 1)) corrupt(layer, "a share of short ways is not in [0, 1)");
+}
+
+std::vector<std::uint8_t> encodeNear(const NearShares& shares) {
+  std::vector<std::uint8_t> q;
+  for (const Vec3& s : shares)
+    for (int c = 0; c < 3; ++c)
+      q.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(s[c], kMostNear))));
+  return q;
+}
+
 // Positions finer than what an entry can tell apart are noise that does not compress.
 float coarsestStep(const Entries& entries) {
   const double total = std::accumulate(entries.area.begin(), entries.area.end(), 0.0);
@@ -126,6 +144,7 @@ void Transfer::check(const AtlasTable& atlas, const std::string& layer) const {
   }
   checkEntries(entries, matrix.columns, layer);
   checkExits(exits, matrix.rows, atlas, layer);
+  checkNear(near_share, atlas.texel.size(), layer);
 }
 
 float entryPointStep(const Entries& entries) {
@@ -154,6 +173,7 @@ std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& at
       {"componentFirst", 1, m.component_first},
       {"scale", 1, m.scale}};
   if (!entries.weight.empty()) tables.push_back({"entryWeight", 1, entries.weight});
+  if (!transfer.near_share.empty()) tables.push_back({"nearShare", 3, encodeNear(transfer.near_share)});
   if (m.bits == 8) {
     tables.push_back({"planes", 1, m.planes8});
     tables.push_back({"weights", 1, m.weights8});
@@ -194,6 +214,11 @@ Transfer readTransfer(const Layer& layer, const AtlasTable& atlas) {
   if (tables.has("entryWeight")) t.entries.weight = tables.get<float>("entryWeight");
   t.exits.side = shape[kSide];
   t.exits.exit_of_texel = tables.get<std::uint32_t>("exitOfTexel");
+  if (tables.has("nearShare")) {
+    const auto& q = tables.get<std::uint8_t>("nearShare", 3);
+    for (std::size_t i = 0; i < q.size(); i += 3)
+      t.near_share.push_back(Vec3(q[i], q[i + 1], q[i + 2]) / 255.0f);
+  }
   t.check(atlas, layer.name);
   return t;
 }

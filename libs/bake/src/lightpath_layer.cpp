@@ -86,6 +86,7 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
                                                        : transport::TransferBy::kGathering;
   o.walks = count(parameters, "walks", o.walks);
   o.walk_seed = context.seed;
+  if (word(parameters, "short") == "obscurance") o.near = static_cast<float>(given(parameters, "near", 0));
   o.test_points = count(parameters, "places", o.test_points);
   if (const std::string& aim = word(parameters, "aim"); aim != "all")
     o.aim = Direction(0, aim == "down" ? -1 : 1, 0);
@@ -124,6 +125,7 @@ Digest keyOf(const LightPathOptions& o, const Coding& c) {
       .add(o.entry_samples)
       .add(o.transfer)
       .add(o.walks)
+      .add(o.near)
       .add(o.elements)
       .add(o.element_rays)
       .add(o.exit_side)
@@ -235,7 +237,8 @@ WholeLayer solveLightPaths(const LayerContext& context, const LightPathOptions& 
   const asset::Transfer transfer{
       .matrix = std::move(encoded.matrix),
       .entries = storedEntries(paths.entries()),
-      .exits = {.side = options.exit_side, .exit_of_texel = paths.exits().of_texel}};
+      .exits = {.side = options.exit_side, .exit_of_texel = paths.exits().of_texel},
+      .near_share = options.near > 0 ? paths.nearShares(progress) : std::vector<Vec3>()};
   WholeLayer solved;
   solved.layer.tables = asset::transferTables(transfer, context.table);
   solved.layer.error_estimate = encoded.error;

@@ -146,6 +146,13 @@ std::vector<LayerKind> makeRegistry() {
              {"gather", "walks"},
              "walks: random light paths from entries, as published: slow and noisy, for comparison"},
             {"walks", Type::kCount, "16", {}, "transfer=walks: paths from an entry"},
+            {"short",
+             Type::kChoice,
+             "keep",
+             {"keep", "obscurance"},
+             "light whose last way is short: in the transfer, or made from direct light and obscurance at "
+             "texels"},
+            {"near", Type::kLength, "auto", {}, "short=obscurance: metres below which a way is short"},
             {"codec",
              Type::kChoice,
              "tiles",
@@ -246,6 +253,13 @@ Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_dia
   }
   // Automatic lengths, in the order in which they depend on one another.
   if (kind.has("distance")) result.emplace("distance", static_cast<double>(autoDistance(scene_diagonal)));
+  constexpr double kNearShare = 0.125;  // half a metre in scenes of human scale
+  if (kind.has("near")) {
+    result.emplace("near", kNearShare * static_cast<double>(autoDistance(scene_diagonal)));
+    if (!(std::get<double>(result["near"]) < kInfinity))
+      throw Error(ErrorCode::kUsage, "--layer " + kind.name, "near=inf leaves nothing in the transfer",
+                  "use an obscurance layer alone for that");
+  }
   if (kind.has("tau")) {
     const double limit = std::get<double>(result["distance"]);
     result.emplace("tau",

@@ -148,12 +148,12 @@ const float* floatsOf(std::span<const relume::Vec3> values) {
 std::span<const relume::Point> pointsOf(const relume_relighter* r) {
   if (!r || std::get_if<relume_relighter::Groups>(&r->relighter)) return {};
   const auto* transfer = std::get_if<relume_relighter::Transfer>(&r->relighter);
-  return transfer ? transfer->entryPoints() : r->atlas.position;
+  return transfer ? transfer->visibilityPoints() : r->atlas.position;
 }
 std::span<const relume::Normal> normalsOf(const relume_relighter* r) {
   if (!r || std::get_if<relume_relighter::Groups>(&r->relighter)) return {};
   const auto* transfer = std::get_if<relume_relighter::Transfer>(&r->relighter);
-  return transfer ? transfer->entryNormals() : r->atlas.normal;
+  return transfer ? transfer->visibilityNormals() : r->atlas.normal;
 }
 
 std::span<const relume::Irradiance> evaluate(relume_relighter& r, const relume_settings* settings) {

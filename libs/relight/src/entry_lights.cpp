@@ -55,13 +55,20 @@ void checkLights(const LightSet& lights) {
 
 }  // namespace
 
-EntryLights::EntryLights(const asset::Entries& entries)
-    : samples_(entries.samples), visibility_(entries.position.size()), result_(entries.size()) {
+EntryLights::EntryLights(const asset::Entries& entries, std::span<const Point> points,
+                         std::span<const Normal> normals)
+    : parts_{Part{0, entries.size(), 0, entries.samples},
+             Part{entries.size(), points.size(), entries.position.size(), 1}},
+      visibility_(entries.position.size() + points.size()),
+      result_(entries.size() + points.size()) {
   for (std::size_t c = 0; c < 3; ++c) {
-    for (const Point& p : entries.position) position_[c].push_back(p[static_cast<int>(c)]);
-    for (const Normal& n : entries.normal) normal_[c].push_back(n[static_cast<int>(c)]);
+    const int axis = static_cast<int>(c);
+    for (const Point& p : entries.position) position_[c].push_back(p[axis]);
+    for (const Point& p : points) position_[c].push_back(p[axis]);
+    for (const Normal& n : entries.normal) normal_[c].push_back(n[axis]);
+    for (const Normal& n : normals) normal_[c].push_back(n[axis]);
   }
-  sum_.resize(entries.size());
+  sum_.resize(result_.size());
 }
 
 void EntryLights::forget() {
@@ -86,20 +93,21 @@ void EntryLights::renew(Kept& kept, const Light& light, std::size_t index,
     Kept& kept;
     const PreparedLight prepared;
     const float* visibility;
+    Part part{};
   } job{*this, kept, PreparedLight(light), visibility ? visibility_.data() : nullptr};
-  parallelFor(result_.size(), kEntriesAtOnce, [&job](std::size_t begin, std::size_t end) {
-    const std::size_t samples = job.self.samples_;
+  const auto means = [&job](std::size_t begin, std::size_t end) {
+    const std::size_t samples = job.part.samples, last = job.part.first_point + end * samples;
     float received[kBlock];
     float sum = 0;
-    std::size_t entry = begin, taken = 0;
-    for (std::size_t first = begin * samples; first < end * samples; first += kBlock) {
+    std::size_t entry = job.part.first_group + begin, taken = 0;
+    for (std::size_t first = job.part.first_point + begin * samples; first < last; first += kBlock) {
       TexelBlock block;
       for (std::size_t c = 0; c < 3; ++c) {
         block.position[c] = job.self.position_[c].data() + first;
         block.normal[c] = job.self.normal_[c].data() + first;
       }
       block.visibility = job.visibility ? job.visibility + first : nullptr;
-      block.count = std::min(kBlock, end * samples - first);
+      block.count = std::min(kBlock, last - first);
       receivedFactors(job.prepared, block, received);
       for (std::size_t i = 0; i < block.count; ++i) {
         sum += received[i];
@@ -108,7 +116,11 @@ void EntryLights::renew(Kept& kept, const Light& light, std::size_t index,
         sum = 0, taken = 0;
       }
     }
-  });
+  };
+  for (const Part& part : parts_) {
+    job.part = part;
+    parallelFor(part.groups, kEntriesAtOnce, means);
+  }
   kept.with_visibility = static_cast<bool>(visibility);
   kept.valid = true;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of entries of light under sets of lights, by what each light gives alone.
+// Irradiance of entries of light, and of single points beside them, under sets of lights, by what each light
+// gives alone.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -15,9 +16,12 @@ namespace relume::relight {
 
 class EntryLights {
  public:
-  explicit EntryLights(const asset::Entries& entries);
+  /// `points`, with `normals`: single places whose irradiance is wanted too.
+  explicit EntryLights(const asset::Entries& entries, std::span<const Point> points = {},
+                       std::span<const Normal> normals = {});
 
-  /// TransferRelighter::entryIrradiance.
+  /// TransferRelighter::entryIrradiance; visibility is asked of the entries' points, then of the others.
+  /// Shape: [entries + points]
   std::span<const Irradiance> evaluate(const LightSet& lights, const VisibilitySource& visibility);
   void forget();
 
@@ -29,10 +33,15 @@ class EntryLights {
     std::vector<float> factor;
   };
 
+  /// Groups of points whose mean is wanted.
+  struct Part {
+    std::size_t first_group, groups, first_point, samples;
+  };
+
   void renew(Kept& kept, const Light& light, std::size_t index, const VisibilitySource& visibility);
   void addUp(const LightSet& lights);
 
-  std::size_t samples_;
+  std::array<Part, 2> parts_;                            ///< entries, single points
   std::array<std::vector<float>, 3> position_, normal_;  ///< by point
   std::vector<float> visibility_;                        ///< by point
   std::vector<Kept> kept_;

@@ -15,6 +15,7 @@
 #include "relume/asset/transfer.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
+#include "relume/core/parallel.h"
 
 namespace relume::relight {
 namespace {
@@ -36,13 +37,35 @@ bool sameBits(std::span<const Irradiance> a, std::span<const Irradiance> b) {
 struct TransferRelighter::Impl {
   Impl(asset::Transfer transfer, const asset::AtlasTable& atlas, const asset::Layer& layer)
       : product(productOf(transfer.matrix, layer)),
-        lights(transfer.entries),
+        lights(transfer.entries, transfer.near_share.empty() ? std::span<const Point>() : atlas.position,
+               transfer.near_share.empty() ? std::span<const Normal>() : atlas.normal),
         interpolation(transfer.exits, transfer.matrix.rows, atlas),
         entries(std::move(transfer.entries)),
         shown(entries.size()),
         weighted(entries.size()),
         exits(product.rows()),
-        texels(interpolation.texelCount()) {}
+        texels(interpolation.texelCount()),
+        near_share(std::move(transfer.near_share)),
+        points(entries.position),
+        normals(entries.normal) {
+    if (near_share.empty()) return;
+    points.insert(points.end(), atlas.position.begin(), atlas.position.end());
+    normals.insert(normals.end(), atlas.normal.begin(), atlas.normal.end());
+    direct.resize(near_share.size());
+  }
+
+  /// asset/transfer.h, NearShares.
+  void addShortWays() {
+    struct Job {
+      Impl& self;
+    } job{*this};
+    parallelFor(texels.size(), 4096, [&job](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vec3 near = job.self.near_share[i];
+        job.self.texels[i].rgb = (job.self.texels[i].rgb + near * job.self.direct[i].rgb) / (1.0f - near);
+      }
+    });
+  }
 
   BlockProduct product;
   EntryLights lights;
@@ -51,6 +74,10 @@ struct TransferRelighter::Impl {
   std::vector<Irradiance> shown;  ///< what exits were computed for, zero at first
   std::vector<Irradiance> weighted;
   std::vector<Irradiance> exits, texels;
+  asset::NearShares near_share;    ///< empty: no short ways are left out
+  std::vector<Irradiance> direct;  ///< by texel, where they are
+  std::vector<Point> points;       ///< where visibility is asked
+  std::vector<Normal> normals;
   bool texels_current = true;
 };
 
@@ -66,12 +93,22 @@ std::size_t TransferRelighter::texelCount() const { return impl_->texels.size();
 std::span<const Point> TransferRelighter::entryPoints() const { return impl_->entries.position; }
 std::span<const Normal> TransferRelighter::entryNormals() const { return impl_->entries.normal; }
 std::size_t TransferRelighter::pointsPerEntry() const { return impl_->entries.samples; }
+std::span<const Point> TransferRelighter::visibilityPoints() const { return impl_->points; }
+std::span<const Normal> TransferRelighter::visibilityNormals() const { return impl_->normals; }
+bool TransferRelighter::leavesShortWays() const { return !impl_->near_share.empty(); }
 std::span<const float> TransferRelighter::entryAreas() const { return impl_->entries.area; }
 std::size_t TransferRelighter::sampleBytes() const { return impl_->product.sampleBytes(); }
 
 std::span<const Irradiance> TransferRelighter::entryIrradiance(const LightSet& lights,
                                                                const VisibilitySource& visibility) {
-  return impl_->lights.evaluate(lights, visibility);
+  Impl& i = *impl_;
+  const std::span<const Irradiance> all = i.lights.evaluate(lights, visibility);
+  if (!i.direct.empty()) {
+    const auto direct = all.subspan(i.entries.size());
+    std::copy(direct.begin(), direct.end(), i.direct.begin());
+    i.texels_current = false;
+  }
+  return all.first(i.entries.size());
 }
 
 void TransferRelighter::forgetVisibility() { impl_->lights.forget(); }
@@ -96,7 +133,10 @@ std::span<const Irradiance> TransferRelighter::relight(std::span<const Irradianc
 
 std::span<const Irradiance> TransferRelighter::texels() {
   Impl& i = *impl_;
-  if (!i.texels_current) i.interpolation.apply(i.exits, i.texels);
+  if (!i.texels_current) {
+    i.interpolation.apply(i.exits, i.texels);
+    if (!i.near_share.empty()) i.addShortWays();
+  }
   i.texels_current = true;
   return i.texels;
 }

@@ -36,6 +36,46 @@ std::vector<Irradiance> copy(std::span<const Irradiance> values) { return {value
 // Point p of light l is seen by a share that anybody can compute.
 float share(std::size_t light, std::size_t point) { return static_cast<float>((7 * light + point) % 5) / 4; }
 
+TEST(TransferRelighter, MakesUpForShortWays) {
+  asset::Asset bake = madeBake({.columns = 90}, 4, 5);
+  TransferRelighter whole(bake, bake.layers[0]);
+  asset::Transfer transfer = asset::readTransfer(bake.layers[0], bake.atlas);
+  const std::size_t texels = bake.atlas.texel.size();
+  for (std::size_t i = 0; i < texels; ++i)
+    transfer.near_share.push_back(Vec3(i % 3, i % 5, 0) * (51.0f / 255));
+  bake.layers[0].tables = asset::transferTables(transfer, bake.atlas);
+  TransferRelighter relighter(bake, bake.layers[0]);
+  EXPECT_FALSE(whole.leavesShortWays());
+  ASSERT_TRUE(relighter.leavesShortWays());
+  ASSERT_EQ(relighter.visibilityPoints().size(), 90 * 5 + texels);
+  LightSet lights = someLights(12);
+  const VisibilitySource visibility = [&](std::size_t light, std::span<float> v) {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = share(light, i);
+  };
+  for (const int again : {0, 1}) {  // the second time under other lights
+    if (again == 1) lights[3].position.x += 1, lights[5].intensity *= 2;
+    const auto far = copy(whole.evaluate(lights, visibility));
+    const auto got = relighter.evaluate(lights, visibility);
+    ASSERT_EQ(relighter.entryIrradiance(lights, visibility).size(), 90u);
+    for (std::size_t i = 0; i < texels; ++i) {
+      Vec3 direct(0);
+      for (std::size_t l = 0; l < lights.size(); ++l)
+        direct += share(l, 90 * 5 + i) *
+                  directIrradiance(lights[l], bake.atlas.position[i], bake.atlas.normal[i]).rgb;
+      for (int c = 0; c < 3; ++c) {
+        const float near = transfer.near_share[i][c];
+        const float expected = (far[i].rgb[c] + near * direct[c]) / (1 - near);
+        EXPECT_NEAR(got[i].rgb[c], expected, 2e-5f * (1 + std::abs(expected))) << i;
+      }
+    }
+  }
+  // Shares that are not one for each texel, or all of the light, are refused.
+  transfer.near_share.pop_back();
+  EXPECT_THROW(asset::transferTables(transfer, bake.atlas), Error);
+  transfer.near_share.push_back(Vec3(1));
+  EXPECT_THROW(asset::transferTables(transfer, bake.atlas), Error);
+}
+
 TEST(TransferRelighter, EntryIrradianceIsTheMeanOfDirectLightOverItsPoints) {
   const asset::Asset bake = madeBake({.columns = 90}, 4, 5);
   TransferRelighter relighter(bake, bake.layers[0]);

@@ -124,6 +124,39 @@ TEST_P(FastTransfer, IsThePublishedOne) {
   }
 }
 
+TEST(ShortWays, AreWhatTheTransferLeavesOut) {
+  // A furnace: of the indirect irradiance I = rho / (1 - rho) under light of 1 on everything, the transfer
+  // has I - c (1 + I), c the share of short ways.
+  const float rho = 0.5f;
+  const made::Lit furnace(made::box({2, 2, 2}, Vec3(rho), Vec3(0)), 64);
+  SilentProgress silent;
+  LightPathOptions options = small(EntryPlacement::kPatches);
+  options.near = 0.4f;
+  const LightPaths paths(furnace.tracer, furnace.atlas, furnace.texels, options, silent);
+  const std::vector<Vec3> near = paths.nearShares(silent);
+  const std::vector<float> t = transfer(paths);
+  const std::size_t exits = paths.exits().size(), entries = paths.entries().size();
+  std::vector<double> share(exits, 0.0), area(exits, 0.0);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto a = static_cast<double>(furnace.texels.points[i].area);
+    share[paths.exits().of_texel[i]] += a * static_cast<double>(near[i].x);
+    area[paths.exits().of_texel[i]] += a;
+    if (!nearACrease(furnace.texels.points[i].position, 0.5f)) {
+      EXPECT_EQ(near[i], Vec3(0));
+    }
+  }
+  const double full = rho / (1 - rho);
+  double most = 0;
+  for (std::size_t x = 0; x < exits; ++x) {
+    double far = 0;
+    for (std::size_t e = 0; e < entries; ++e) far += static_cast<double>(t[x * 3 * entries + e]);
+    const double c = share[x] / area[x];
+    most = std::max(most, c);
+    EXPECT_NEAR(far + c * (1 + full), full, 0.03 * full) << x;  // two sets of rays
+  }
+  EXPECT_GT(most, 0.1);
+}
+
 INSTANTIATE_TEST_SUITE_P(LightWalks, FastTransfer,
                          testing::Values(WalkCase{EntryPlacement::kPatches, 0.0f, 0.3f, 64, 8},
                                          // Few points are met by few rays of exits.

@@ -371,6 +371,12 @@ struct LightPaths::Impl {
             });
         },
         &progress);
+    // Inside bodies everything is near; what others see of such a texel is filled from one beside it.
+    for (std::uint32_t i = 0; i < share.size(); ++i)
+      if (sides.buried(i)) {
+        const std::uint32_t other = sides.answering(i);
+        share[i] = other == scene::kNone || sides.buried(other) ? Vec3(0.0f) : share[sides.point(other)];
+      }
     return share;
   }
 

@@ -28,12 +28,19 @@ struct Exits {
   std::vector<std::uint32_t> exit_of_texel;  ///< shape: [texels of the atlas table]; a row of the matrix
 };
 
+/// What the matrix leaves out of light whose last way is short, by texel: the share of directions in which
+/// surfaces are near, times their reflectance. With `far` what exits give a texel, E its direct irradiance
+/// and c the share, its indirect irradiance is (far + c E) / (1 - c): near surfaces are taken to be lit as
+/// the texel is. The file keeps shares to 1 / 510.
+using NearShares = std::vector<Vec3>;  ///< shape: [texels of the atlas table], or empty: nothing is left out
+
 /// Irradiance of exit x = sum over entries e of matrix[x][e] weight[e] mean over e's points of their direct
 /// irradiance. Indirect light alone: the direct light at the exit is not in it.
 struct Transfer {
   codec::BlockMatrix matrix;  ///< rows: exits, columns: entries
   Entries entries;
   Exits exits;
+  NearShares near_share;
 
   /// Throws Error kCorruptAsset, naming `layer`, unless the parts fit each other and `atlas`, numbers are
   /// finite, areas and weights not negative, normals of unit length, and every block of texels lies in one

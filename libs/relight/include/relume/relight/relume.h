@@ -94,7 +94,8 @@ const float* relume_normals(const relume_relighter* relighter);   /* [texel_coun
 relume_layer_kind relume_kind(const relume_relighter* relighter);
 
 /* The points about which visibility is asked: the texels of RELUME_OBSCURANCE, the points where light enters
- * of RELUME_TRANSFER, none of RELUME_GROUPS. Arrays live as long as the relighter. */
+ * of RELUME_TRANSFER (and then the texels, where the bake leaves short ways to obscurance), none of
+ * RELUME_GROUPS. Arrays live as long as the relighter. */
 size_t relume_point_count(const relume_relighter* relighter);
 const float* relume_points(const relume_relighter* relighter);        /* [point_count][3], world */
 const float* relume_point_normals(const relume_relighter* relighter); /* [point_count][3], world */

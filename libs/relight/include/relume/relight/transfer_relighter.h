@@ -38,9 +38,16 @@ class TransferRelighter {
   std::span<const Point> entryPoints() const;
   std::span<const Normal> entryNormals() const;
   std::size_t pointsPerEntry() const;
+  /// Where visibility is asked: the points of entries, then, of a bake that leaves short ways to obscurance,
+  /// the middles of all texels.
+  std::span<const Point> visibilityPoints() const;
+  std::span<const Normal> visibilityNormals() const;
+  /// Whether the bake leaves short ways out (asset/transfer.h, NearShares): texels need their direct light.
+  bool leavesShortWays() const;
   std::span<const float> entryAreas() const;  ///< m^2; shape: [entries]
 
-  /// Mean direct irradiance of each entry, shape: [entries]; valid until the next call. Area lights by L A
+  /// Mean direct irradiance of each entry (and of each texel, kept for texels(), where short ways are left
+  /// out), shape: [entries]; valid until the next call. Area lights by L A
   /// cos_l / (r^2 + A / pi) ([SzirmayKalos] section 10). A light that is the same as at its place in the set
   /// of the call before, but for colour and intensity, costs nothing and its visibility is not asked again;
   /// see forgetVisibility. Throws Error kInvalidValue, and keeps what was, for a light that is not finite or
@@ -55,8 +62,9 @@ class TransferRelighter {
   /// clusters of entries that are dark cost nothing. Throws Error kInvalidValue unless all are of magnitude
   /// 1e20 or less.
   std::span<const Irradiance> relight(std::span<const Irradiance> entry_irradiance);
-  /// What relight gave last, at each texel of the atlas table; zero before. Shape: [texels]; valid until the
-  /// next call.
+  /// What relight gave last, at each texel of the atlas table; zero before. Where short ways are left out,
+  /// they are made up for by the direct light of the last call of entryIrradiance. Shape: [texels]; valid
+  /// until the next call.
   std::span<const Irradiance> texels();
 
   /// All three in turn: indirect irradiance of each texel.

@@ -110,7 +110,7 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Light> lights;
   std::vector<Box3> light_boxes;  ///< where lights may be, as the author says; empty: nobody said
-  Environment environment;  ///< glTF has none: dark until somebody sets it
+  Environment environment;        ///< glTF has none: dark until somebody sets it
   std::vector<Camera> cameras;
 
   Box3 bounds() const;                ///< of static instances, world
