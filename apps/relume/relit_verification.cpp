@@ -8,52 +8,44 @@
 #include "lightmap_truth.h"
 #include "relit.h"
 #include "relume/core/error.h"
-#include "relume/core/frame.h"
 #include "relume/core/sampling.h"
 #include "relume/picture/baked_values.h"
 #include "relume/relight/transfer_relighter.h"
+#include "relume/transport/light_search.h"
 #include "relume/transport/reference.h"
 #include "verification_places.h"
 
 namespace relume::app {
 namespace {
 
-constexpr std::uint32_t kTriesPerLamp = 400, kProbes = 128;
+constexpr std::uint32_t kProbes = 512;
 
-/// Distance to the nearest surface, from rays all around; 0 inside bodies.
-float clearanceAt(const trace::Tracer& tracer, Point p, std::uint32_t stream) {
+/// Distance to the nearest surface, from rays all around.
+double clearanceAt(const trace::Tracer& tracer, Point p) {
   float nearest = kInfinity;
-  std::uint32_t backs = 0;
-  for (std::uint32_t i = 0; i < kProbes; ++i) {
-    const trace::RayHit hit = tracer.intersect({p, squareToSphere(sobol2(i, stream))});
-    if (!hit) continue;
-    nearest = std::min(nearest, hit.t);
-    backs += hit.back_face;
-  }
-  return backs > kProbes / 4 ? 0.0f : nearest;
+  for (std::uint32_t i = 0; i < kProbes; ++i)
+    nearest = std::min(nearest, tracer.intersect({p, squareToSphere(sobol2(i, 0)), kInfinity}, i).t);
+  return static_cast<double>(nearest);
 }
 
-/// Lamps between a place on a surface and what lies opposite: in the air, whatever the shape of the scene.
-std::vector<LampAgreement> chooseLamps(const trace::Tracer& tracer, const SurfaceSampler& surface,
-                                       std::uint32_t count, float least, float most, std::uint64_t seed) {
+/// In free space, as the lights that the encoder was trained with.
+std::vector<LampAgreement> chooseLamps(const trace::Tracer& tracer, std::uint32_t count,
+                                       const transport::LightPlaces& where, std::uint64_t seed,
+                                       Progress& progress) {
+  const Box3 bounds = tracer.scene().bounds();
   std::vector<LampAgreement> lamps;
-  const std::uint32_t stream = streamOf(seed, 1, 0);
-  for (std::uint32_t i = 0; i < count * kTriesPerLamp && lamps.size() < count; ++i) {
-    const Vec2 u = sobol2(i, stream), v = sobol2(i, stream + 1), w = sobol2(i, stream + 2);
-    const scene::Hit from = surface.at(u.x, v);
-    const Normal n = scene::geometricNormal(tracer.scene(), from.instance, from.triangle);
-    const Point p = trace::offsetOrigin(scene::worldPosition(tracer.scene(), from), n);
-    const Direction d = Frame::about(n).toWorld(squareToCosineHemisphere(w));
-    const trace::RayHit opposite = tracer.intersect({p, d});
-    if (!opposite || opposite.back_face) continue;
-    const Point at = p + u.y * opposite.t * d;
-    const float clearance = clearanceAt(tracer, at, stream + 3 + i);
-    if (clearance < least || clearance > most) continue;
-    Light lamp;
-    lamp.position = at;
-    lamps.push_back({lamp, static_cast<double>(clearance)});
-  }
+  for (const Light& lamp : transport::findLights(tracer, {&bounds, 1}, count, where, seed, progress))
+    lamps.push_back({lamp, clearanceAt(tracer, lamp.position)});
   return lamps;
+}
+
+/// Side of a square of the median entry. Entries that no lamp reaches are larger, but few.
+double spacingOf(std::span<const float> areas) {
+  std::vector<float> sorted(areas.begin(), areas.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  if (sorted.empty()) return 0;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return std::sqrt(static_cast<double>(*middle));
 }
 
 /// A plane of irradiance, read at the places as a viewer does.
@@ -93,9 +85,7 @@ RelitVerification verifyRelit(scene::Scene scene, asset::Asset asset, const Veri
                        layer.parameters.at("materials") == asset::Parameter(std::string("lambert"));
   {
     const relight::TransferRelighter relighter(asset, layer);
-    const auto areas = relighter.entryAreas();
-    const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-    result.spacing = std::sqrt(area / static_cast<double>(std::max<std::size_t>(areas.size(), 1)));
+    result.spacing = spacingOf(relighter.entryAreas());
   }
   addRelitPlane(asset, result.layer, {});  // for the places, which a layer without values has not
   const trace::Tracer tracer(scene);
@@ -104,8 +94,9 @@ RelitVerification verifyRelit(scene::Scene scene, asset::Asset asset, const Veri
       tracer, picture::BakedValues(scene, &asset, picture::View::kIndirect, result.layer), options, skipped);
   result.points = places.size();
   const auto spacing = static_cast<float>(result.spacing);
-  result.lamps = chooseLamps(tracer, SurfaceSampler(scene), count, near ? 0.25f * spacing : spacing,
-                             near ? spacing : kInfinity, options.seed);
+  result.lamps = chooseLamps(
+      tracer, count, {.nearest = near ? 0.25f * spacing : spacing, .farthest = near ? spacing : kInfinity},
+      options.seed, progress);
   if (result.lamps.empty() || places.empty())
     throw Error(ErrorCode::kEmptyScene, scene.name,
                 "no lamp finds room as far from all surfaces as entries are wide",

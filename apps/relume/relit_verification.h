@@ -17,7 +17,7 @@ struct LampAgreement {
 
 struct RelitVerification {
   std::string layer;
-  double spacing = 0;  ///< metres: side of a square of an entry's mean area
+  double spacing = 0;  ///< metres: side of a square of the median entry
   std::vector<LampAgreement> lamps;
   std::size_t points = 0;
   std::uint64_t paths = 0;
@@ -26,7 +26,8 @@ struct RelitVerification {
   double error_estimate = 0;  ///< what encoding added, as the bake measured it
 };
 
-/// `count` white point lamps in the air, at least an entry's spacing from any surface (`near`: at most that).
+/// `count` white point lamps in rooms, or in the open where there are none, at least an entry's spacing from
+/// any surface (`near`: at most that).
 /// Throws Error kNoSuchLayer, kEmptyScene where no such lamp finds room, kInterrupted.
 RelitVerification verifyRelit(scene::Scene scene, asset::Asset asset, const VerifyOptions& options,
                               std::uint32_t count, bool near, Progress& progress);

@@ -17,7 +17,6 @@
 #include "light_paths/elements.h"
 #include "light_paths/exit_rays.h"
 #include "light_paths/exit_tiles.h"
-#include "light_paths/light_search.h"
 #include "light_paths/light_walks.h"
 #include "light_paths/piece_entries.h"
 #include "light_paths/places.h"

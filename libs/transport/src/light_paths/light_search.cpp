@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "light_paths/light_search.h"
+#include "relume/transport/light_search.h"
 
 #include <algorithm>
 #include <array>

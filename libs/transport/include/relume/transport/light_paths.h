@@ -23,6 +23,7 @@
 #include "relume/core/light.h"
 #include "relume/core/progress.h"
 #include "relume/trace/tracer.h"
+#include "relume/transport/light_search.h"
 #include "relume/transport/reference.h"
 
 namespace relume::transport {
@@ -102,13 +103,6 @@ struct ExitTiles {
   std::vector<std::uint32_t> row;    ///< exits, increasing within a tile
   std::vector<float> blend;          ///< in (0, 1]
   std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
-};
-
-/// Where a test light may stand.
-struct LightPlaces {
-  float nearest = 0.0f;        ///< metres to any surface, at least
-  float farthest = kInfinity;  ///< and at most
-  float spots = 0.0f;          ///< share of spot lights, the rest are point lights
 };
 
 /// What lights an exit in LightPaths::irradiance.
