@@ -214,7 +214,7 @@ struct LightPaths::Impl {
     for (std::size_t side = 0; side < of_side.size(); ++side)
       if (pieces.of_side[side] != scene::kNone) of_side[side] = clusters.of[pieces.of_side[side]];
     const Members members = membersOf(of_side, clusters.size());
-    entry_places = placesOn(texels, sides, placeWeights(), members, options.entry_samples, options.seed);
+    entry_places = placesOn(surface, sides, placeWeights(), members, options.entry_samples, options.seed);
     if (options.transfer == TransferBy::kWalks)
       walk_starts = startsOnPatches(surface, sides, members, options.walks, options.walk_seed);
     entries.samples_each = options.entry_samples;
@@ -413,7 +413,7 @@ struct LightPaths::Impl {
             on_piece[l * pieces.size() + p] += s.value * on_entry[l * entries.size() + s.entry];
     } else {
       const std::vector<Place> places =
-          placesOn(texels, sides, placeWeights(), membersOf(pieces.of_side, pieces.size()), kPiecePlaces,
+          placesOn(surface, sides, placeWeights(), membersOf(pieces.of_side, pieces.size()), kPiecePlaces,
                    options.seed + 2);
       on_piece = lightOn(lights, places, kPiecePlaces, progress);
     }

@@ -41,15 +41,24 @@ std::vector<std::uint32_t> alongCurve(const atlas::Texels& texels, const Sides& 
   return order;
 }
 
+Point positionOn(const SurfaceScene& scene, const Sides& sides, std::uint32_t side, Vec2 u) {
+  const std::uint32_t point = sides.point(side);
+  std::span<const atlas::SubSample> exposed;
+  if (!sides.isBack(side)) exposed = scene.exposure.places(point);
+  if (exposed.empty()) return footprintPosition(scene.texels, scene.texels.points[point], u);
+  const auto count = static_cast<float>(exposed.size());
+  return exposed[std::min(static_cast<std::size_t>(u.x * count), exposed.size() - 1)].position;
+}
+
 }  // namespace
 
-std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, std::span<const float> weight,
+std::vector<Place> placesOn(const SurfaceScene& scene, const Sides& sides, std::span<const float> weight,
                             const Members& groups, std::uint32_t each, std::uint64_t seed) {
   const std::size_t count = groups.first.size() - 1;
   std::vector<Place> places(count * each);
   parallelFor(count, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
-      const std::vector<std::uint32_t> order = alongCurve(texels, sides, groups.of(g));
+      const std::vector<std::uint32_t> order = alongCurve(scene.texels, sides, groups.of(g));
       double all = 0, so_far = 0;
       for (const std::uint32_t side : order) all += static_cast<double>(weight[side]);
       std::size_t at = 0;
@@ -60,7 +69,7 @@ std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, std
         while (at + 1 < order.size() && so_far + static_cast<double>(weight[order[at]]) <= target)
           so_far += static_cast<double>(weight[order[at++]]);
         const std::uint32_t side = order[at];
-        places[g * each + k] = {footprintPosition(texels, texels.points[sides.point(side)], u),
+        places[g * each + k] = {positionOn(scene, sides, side, u),
                                 sides.shadingNormal(side), sides.geometricNormal(side)};
       }
     }

@@ -16,8 +16,9 @@ struct Place {
 };
 
 /// `each` places on every group, equal shares of its weight each: strata along a curve through the group.
-/// weight: by side, not negative. Shape: [groups][each]. Every group has a member.
-std::vector<Place> placesOn(const atlas::Texels& texels, const Sides& sides, std::span<const float> weight,
+/// weight: by side, not negative. Shape: [groups][each]. Every group has a member. None lies where something
+/// stands upon its texel.
+std::vector<Place> placesOn(const SurfaceScene& scene, const Sides& sides, std::span<const float> weight,
                             const Members& groups, std::uint32_t each, std::uint64_t seed);
 
 /// Irradiance at a place from one light, with a shadow ray to its middle; light from behind the surface does
