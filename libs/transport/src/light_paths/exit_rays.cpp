@@ -34,7 +34,7 @@ void ExitRays::look(std::size_t exit, ExitView& view) {
       const std::uint32_t point = scene_.sides.point(side), piece = scene_.pieces.of_side[side];
       const Vec3 rho = scene_.reflectance.value[point] * (share / static_cast<float>(each));
       direct_.add(piece, rho * scene_.reflectance.direct[point]);
-      reflected_.add(scene_.elements.of_piece[piece], rho);
+      reflected_.add(scene_.elements.of_piece[piece], rho * scene_.elements.shape[piece]);
     });
   });
   direct_.take(view.direct), reflected_.take(view.reflected);

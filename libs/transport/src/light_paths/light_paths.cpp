@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // T_xe = sum over gather rays of x, each with its share s:
-//   s rho (1 where the ray ends on e, + G_je of the element j where it ends),
-// with rho the reflectance of the texel where the ray ends and G_je the irradiance on element j after any
-// number of reflections, per unit irradiance on entry e (ElementLight). So what light does first, on its way
-// from the entry to the exit, is as fine as texels are; elements make only what comes after.
+//   s rho (d_p where the ray ends on a piece p of e, + r_p G_je of the element j where it ends),
+// with rho the reflectance of the texel where the ray ends and G_je the irradiance on element j after one
+// reflection or more, per unit irradiance on entry e (ElementLight). d and r are the shapes of typical light
+// within entries and elements (typical_light.h). So what light does first, on its way from the entry to the
+// exit, is as fine as texels are; elements make only what comes after.
 #include "relume/transport/light_paths.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 
 #include "direction_batch.h"
 #include "light_paths/clusters.h"
@@ -21,6 +23,7 @@
 #include "light_paths/piece_entries.h"
 #include "light_paths/places.h"
 #include "light_paths/shot_entries.h"
+#include "light_paths/typical_light.h"
 #include "light_paths/vector_row.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
@@ -180,6 +183,7 @@ struct LightPaths::Impl {
       placeEntries(view, progress);
     }
     placeElements(view, progress);
+    first = firstReflection(elements, sides, pieces, reflectance, piece_entries, entries.size(), progress);
   }
 
   /// By side: how much of the light that falls there others see again, but for what it does in between. A
@@ -209,12 +213,17 @@ struct LightPaths::Impl {
     for (std::size_t i = 0; i < pieces.size(); ++i)
       important += static_cast<double>(pieces.all[i].area * importance[i]);
     spacing = static_cast<float>(std::sqrt(important / static_cast<double>(clusters.size())));
-    piece_entries = PieceEntries::ofPatches(clusters.of);
+    const std::vector<float> weights = placeWeights();
+    std::vector<float> piece_weights(pieces.size(), 0.0f);
+    for (std::size_t side = 0; side < sides.size(); ++side)
+      if (pieces.of_side[side] != scene::kNone) piece_weights[pieces.of_side[side]] += weights[side];
+    piece_entries = PieceEntries::ofPatches(
+        clusters.of, shapeWithin(clusters.of, clusters.size(), piece_weights, light.facing()));
     std::vector<std::uint32_t> of_side(sides.size(), scene::kNone);
     for (std::size_t side = 0; side < of_side.size(); ++side)
       if (pieces.of_side[side] != scene::kNone) of_side[side] = clusters.of[pieces.of_side[side]];
     const Members members = membersOf(of_side, clusters.size());
-    entry_places = placesOn(surface, sides, placeWeights(), members, options.entry_samples, options.seed);
+    entry_places = placesOn(surface, sides, weights, members, options.entry_samples, options.seed);
     if (options.transfer == TransferBy::kWalks)
       walk_starts = startsOnPatches(surface, sides, members, options.walks, options.walk_seed);
     entries.samples_each = options.entry_samples;
@@ -279,19 +288,24 @@ struct LightPaths::Impl {
     const Clusters clusters =
         makeLitClusters(tracer, pieces.all, importance, light,
                         {options.elements, kElementNormalWeight, options.seed + 1}, Slivers::kKept, progress);
-    elements = makeElements(sides, pieces, reflectance, clusters.of, clusters.size(), progress);
+    const std::vector<float> typical = reflectedLight(sides, pieces, reflectance, light.facing(), progress);
+    elements =
+        makeElements(sides, pieces, reflectance, clusters.of, clusters.size(),
+                     shapeWithin(clusters.of, clusters.size(), areasOf(sides, pieces), typical), progress);
   }
 
-  /// What elements send out of light on entries.
-  void fill(std::size_t block, std::span<float> radiosity) const {
-    for (std::size_t i = 0; i < elements.size(); ++i)
-      for (const Weight& w : elements.sourcesOf(i))
-        for (const EntryShare& s : piece_entries.of(w.index)) {
-          if (s.entry / ElementLight::kBlock != block) continue;
-          float* at = radiosity.data() + i * ElementLight::kRow + s.entry % ElementLight::kBlock;
-          for (int c = 0; c < 3; ++c)
-            at[static_cast<std::size_t>(c) * ElementLight::kBlock] += s.value * w.value[c];
-        }
+  /// What falls on elements after one reflection, of light on entries.
+  void fill(std::size_t block, std::span<float> irradiance) const {
+    const std::size_t begin = block * ElementLight::kBlock, end = begin + ElementLight::kBlock;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const std::span<const Weight> row = first.of(i);
+      float* of_element = irradiance.data() + i * ElementLight::kRow;
+      for (auto w =
+               std::partition_point(row.begin(), row.end(), [&](const Weight& x) { return x.index < begin; });
+           w != row.end() && w->index < end; ++w)
+        for (int c = 0; c < 3; ++c)
+          of_element[static_cast<std::size_t>(c) * ElementLight::kBlock + w->index - begin] += w->value[c];
+    }
   }
 
   void rows(std::size_t tile, std::span<float> out) const {
@@ -309,7 +323,7 @@ struct LightPaths::Impl {
     ExitRays exit_rays(exit_scene);
     ExitView view;
     std::vector<Weight> weights;
-    std::vector<std::size_t> first(1, 0);
+    std::vector<std::size_t> begins(1, 0);
     for (std::size_t r = 0; r < of.size(); ++r) {
       exit_rays.look(gathered_from[of[r]], view);
       float* row = out.data() + r * 3 * columns;
@@ -318,14 +332,14 @@ struct LightPaths::Impl {
           for (std::size_t c = 0; c < 3; ++c)
             row[c * columns + s.entry] += s.value * w.value[static_cast<int>(c)];
       weights.insert(weights.end(), view.reflected.begin(), view.reflected.end());
-      first.push_back(weights.size());
+      begins.push_back(weights.size());
     }
     for (std::size_t block = 0; block < reflected->blocks(); ++block) {
       const std::size_t begin = block * ElementLight::kBlock,
                         count = std::min(ElementLight::kBlock, columns - begin);
       for (std::size_t r = 0; r < of.size(); ++r) {
         const std::array<float, ElementLight::kRow> sum =
-            gather(*reflected, block, std::span(weights).subspan(first[r], first[r + 1] - first[r]));
+            gather(*reflected, block, std::span(weights).subspan(begins[r], begins[r + 1] - begins[r]));
         float* row = out.data() + r * 3 * columns + begin;
         for (std::size_t c = 0; c < 3; ++c)
           for (std::size_t k = 0; k < count; ++k) row[c * columns + k] += sum[c * ElementLight::kBlock + k];
@@ -417,17 +431,22 @@ struct LightPaths::Impl {
                    options.seed + 2);
       on_piece = lightOn(lights, places, kPiecePlaces, progress);
     }
+    std::vector<std::uint32_t> itself(pieces.size());
+    std::iota(itself.begin(), itself.end(), 0u);
+    const FirstReflection of_pieces = firstReflection(
+        elements, sides, pieces, reflectance,
+        PieceEntries::ofPatches(itself, std::vector<float>(pieces.size(), 1.0f)), pieces.size(), progress);
     const ElementLight of_lights(
         elements, lights.size(),
-        [&](std::size_t block, std::span<float> radiosity) {
+        [&](std::size_t block, std::span<float> irradiance) {
           const std::size_t begin = block * ElementLight::kBlock,
                             end = std::min(begin + ElementLight::kBlock, lights.size());
           for (std::size_t i = 0; i < elements.size(); ++i)
-            for (const Weight& w : elements.sourcesOf(i))
+            for (const Weight& w : of_pieces.of(i))
               for (std::size_t l = begin; l < end; ++l) {
-                const Vec3 b = w.value * on_piece[l * pieces.size() + w.index];
-                float* at = radiosity.data() + i * ElementLight::kRow + (l - begin);
-                for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(c) * ElementLight::kBlock] += b[c];
+                const Vec3 e = w.value * on_piece[l * pieces.size() + w.index];
+                float* at = irradiance.data() + i * ElementLight::kRow + (l - begin);
+                for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(c) * ElementLight::kBlock] += e[c];
               }
         },
         kResidual, progress);
@@ -442,10 +461,10 @@ struct LightPaths::Impl {
             exit_rays.look(gathered_from[x], view);
             for (std::size_t block = 0; block < of_lights.blocks(); ++block) {
               const auto sum = gather(of_lights, block, view.reflected);
-              const std::size_t first = block * ElementLight::kBlock;
-              for (std::size_t l = first; l < std::min(first + ElementLight::kBlock, lights.size()); ++l) {
-                Vec3 e(sum[l - first], sum[ElementLight::kBlock + l - first],
-                       sum[2 * ElementLight::kBlock + l - first]);
+              const std::size_t begins = block * ElementLight::kBlock;
+              for (std::size_t l = begins; l < std::min(begins + ElementLight::kBlock, lights.size()); ++l) {
+                Vec3 e(sum[l - begins], sum[ElementLight::kBlock + l - begins],
+                       sum[2 * ElementLight::kBlock + l - begins]);
                 for (const Weight& w : view.direct) e += w.value * on_piece[l * pieces.size() + w.index];
                 result[l * exits.size() + x] = Irradiance(e);
               }
@@ -476,6 +495,7 @@ struct LightPaths::Impl {
   Exits exits;
   ExitTiles tiles;
   Elements elements;
+  FirstReflection first;
   std::unique_ptr<ElementLight> reflected;  // of kGathering
   std::vector<WalkStart> walk_starts;       // of kWalks
   std::vector<VirtualLight> virtual_lights;

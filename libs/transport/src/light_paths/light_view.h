@@ -29,6 +29,8 @@ class LightView {
   /// Alike: most of the places that one of two pieces sees are seen by the other too, or neither sees any.
   /// Apart: hardly any are, or one sees some and the other none.
   Likeness compare(std::size_t a, std::size_t b) const;
+  /// By piece: what falls on it of lights at all the places, how near they are left out.
+  std::span<const float> facing() const { return facing_; }
   bool dark(std::size_t piece) const { return seen_[piece].none(); }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light on pieces of surface, as the entries tell it: irradiance of a piece = sum over its shares of value
-// times irradiance of the entry. A piece of a patch has all of the patch's irradiance; one that entry points
-// were shot at has 1 / (d A) of each, d the density of entries and A its own area.
+// times irradiance of the entry. A piece of a patch has the patch's irradiance in its shape; one that entry
+// points were shot at has 1 / (d A) of each, d the density of entries and A its own area.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -27,11 +27,11 @@ class PieceEntries {
     for (const EntryShare& s : shares_) ++first_[s.piece + 1];
     for (std::size_t p = 0; p < pieces; ++p) first_[p + 1] += first_[p];
   }
-  /// entry_of_piece: scene::kNone for pieces in no entry.
-  static PieceEntries ofPatches(std::span<const std::uint32_t> entry_of_piece) {
+  /// entry_of_piece: scene::kNone for pieces in no entry. shape: by piece (typical_light.h).
+  static PieceEntries ofPatches(std::span<const std::uint32_t> entry_of_piece, std::span<const float> shape) {
     std::vector<EntryShare> shares;
     for (std::uint32_t p = 0; p < entry_of_piece.size(); ++p)
-      if (entry_of_piece[p] != scene::kNone) shares.push_back({p, entry_of_piece[p], 1.0f});
+      if (entry_of_piece[p] != scene::kNone) shares.push_back({p, entry_of_piece[p], shape[p]});
     return {entry_of_piece.size(), std::move(shares)};
   }
 

@@ -69,8 +69,8 @@ std::vector<Place> placesOn(const SurfaceScene& scene, const Sides& sides, std::
         while (at + 1 < order.size() && so_far + static_cast<double>(weight[order[at]]) <= target)
           so_far += static_cast<double>(weight[order[at++]]);
         const std::uint32_t side = order[at];
-        places[g * each + k] = {positionOn(scene, sides, side, u),
-                                sides.shadingNormal(side), sides.geometricNormal(side)};
+        places[g * each + k] = {positionOn(scene, sides, side, u), sides.shadingNormal(side),
+                                sides.geometricNormal(side)};
       }
     }
   });
