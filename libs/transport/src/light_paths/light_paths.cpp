@@ -173,10 +173,10 @@ struct LightPaths::Impl {
     const std::size_t most = kPiecesOfElement * std::max(options.elements, options.entries);
     {
       const Pieces coarse = makePieces(surface, sides, most);
-      const LightView view(tracer, coarse.all, test, progress);
+      const LightView view = viewOf(coarse, test, progress);
       pieces = refinedPieces(surface, sides, coarse, view.importance(coarse.all, kLeastPieces), most);
     }
-    const LightView view(tracer, pieces.all, test, progress);
+    const LightView view = viewOf(pieces, test, progress);
     if (options.placement == EntryPlacement::kShot) {
       shootAtPieces(progress);
     } else {
@@ -189,19 +189,22 @@ struct LightPaths::Impl {
   /// By side: how much of the light that falls there others see again, but for what it does in between. A
   /// mean by area alone would be too low where surfaces lie upon each other: those hidden parts are dark, and
   /// nobody sees them.
-  std::vector<float> placeWeights() const {
-    std::vector<double> area(pieces.size(), 0.0);
-    for (std::size_t side = 0; side < sides.size(); ++side)
-      if (pieces.of_side[side] != scene::kNone)
-        area[pieces.of_side[side]] += static_cast<double>(sides.area(side));
+  std::vector<float> placeWeights(const Pieces& of) const {
+    const std::vector<float> area = areasOf(sides, of);
     std::vector<float> weight(sides.size(), 0.0f);
     for (std::size_t side = 0; side < sides.size(); ++side) {
-      const std::uint32_t piece = pieces.of_side[side];
+      const std::uint32_t piece = of.of_side[side];
       if (piece == scene::kNone || !(area[piece] > 0)) continue;
-      const float share = sides.area(side) / static_cast<float>(area[piece]);
-      weight[side] = share * pieces.all[piece].area * luminance(reflectance.value[sides.point(side)]);
+      const float share = sides.area(side) / area[piece];
+      weight[side] = share * of.all[piece].area * luminance(reflectance.value[sides.point(side)]);
     }
     return weight;
+  }
+  std::vector<Place> placesOnPieces(const Pieces& of, std::uint64_t seed) const {
+    return placesOn(surface, sides, placeWeights(of), membersOf(of.of_side, of.size()), kPiecePlaces, seed);
+  }
+  LightView viewOf(const Pieces& of, const LightSet& lights, Progress& progress) const {
+    return {tracer, of.size(), placesOnPieces(of, options.seed + 4), lights, progress};
   }
 
   void placeEntries(const LightView& light, Progress& progress) {
@@ -213,7 +216,7 @@ struct LightPaths::Impl {
     for (std::size_t i = 0; i < pieces.size(); ++i)
       important += static_cast<double>(pieces.all[i].area * importance[i]);
     spacing = static_cast<float>(std::sqrt(important / static_cast<double>(clusters.size())));
-    const std::vector<float> weights = placeWeights();
+    const std::vector<float> weights = placeWeights(pieces);
     std::vector<float> piece_weights(pieces.size(), 0.0f);
     for (std::size_t side = 0; side < sides.size(); ++side)
       if (pieces.of_side[side] != scene::kNone) piece_weights[pieces.of_side[side]] += weights[side];
@@ -426,9 +429,7 @@ struct LightPaths::Impl {
           for (const EntryShare& s : piece_entries.of(p))
             on_piece[l * pieces.size() + p] += s.value * on_entry[l * entries.size() + s.entry];
     } else {
-      const std::vector<Place> places =
-          placesOn(surface, sides, placeWeights(), membersOf(pieces.of_side, pieces.size()), kPiecePlaces,
-                   options.seed + 2);
+      const std::vector<Place> places = placesOnPieces(pieces, options.seed + 2);
       on_piece = lightOn(lights, places, kPiecePlaces, progress);
     }
     std::vector<std::uint32_t> itself(pieces.size());

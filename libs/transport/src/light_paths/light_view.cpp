@@ -16,17 +16,19 @@ constexpr float kAlikeShare = 0.5f, kApartShare = 0.1f;
 
 }  // namespace
 
-LightView::LightView(const trace::Tracer& tracer, std::span<const Piece> pieces,
+LightView::LightView(const trace::Tracer& tracer, std::size_t pieces, std::span<const Place> places,
                      std::span<const Light> lights, Progress& progress)
-    : seen_(pieces.size()), facing_(pieces.size(), 0.0f) {
-  const std::size_t count = std::min(lights.size(), kPlaces);
-  parallelFor(pieces.size(), 64, [&](std::size_t begin, std::size_t end) {
+    : seen_(pieces), facing_(pieces, 0.0f) {
+  const std::size_t count = std::min(lights.size(), kPlaces),
+                    each = places.size() / std::max<std::size_t>(pieces, 1);
+  parallelFor(pieces, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Point start = trace::offsetOrigin(pieces[i].position, pieces[i].normal);
       for (std::size_t k = 0; k < count; ++k) {
+        const Place& place = places[i * each + k % each];
+        const Point start = trace::offsetOrigin(place.position, place.geometric_normal);
         const Vec3 way = lights[k].position - start;
-        const float length = glm::length(way), cosine = glm::dot(way, pieces[i].normal) / length;
-        if (!(cosine > 0) ||
+        const float length = glm::length(way), cosine = glm::dot(way, place.shading_normal) / length;
+        if (!(cosine > 0) || !(glm::dot(way, place.geometric_normal) > 0) ||
             tracer.occluded({start, way / length, length},
                             hashCombine(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k))))
           continue;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "light_paths/pieces.h"
+#include "light_paths/places.h"
 #include "relume/core/light.h"
 
 namespace relume::transport {
@@ -16,9 +17,10 @@ class LightView {
  public:
   static constexpr std::size_t kPlaces = 128;
 
-  /// lights: the first kPlaces count. Throws Error kInterrupted.
-  LightView(const trace::Tracer& tracer, std::span<const Piece> pieces, std::span<const Light> lights,
-            Progress& progress);
+  /// places: on pieces, the same number on each; a light is looked at from one of them. lights: the first
+  /// kPlaces count. Throws Error kInterrupted.
+  LightView(const trace::Tracer& tracer, std::size_t pieces, std::span<const Place> places,
+            std::span<const Light> lights, Progress& progress);
 
   /// How finely a piece is worth being divided, in [least, 1]: 1 where it faces a fair share of the places
   /// that the surface that they light faces on average; all 1 without lights. How near they are does not
