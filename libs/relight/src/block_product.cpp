@@ -2,8 +2,10 @@
 #include "block_product.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstring>
+#include <type_traits>
 
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
@@ -12,7 +14,6 @@ namespace relume::relight {
 namespace {
 
 constexpr std::size_t kChannels = 3;
-constexpr float kMostFactor = 32767.0f;
 constexpr int kHighDigit = 257;
 constexpr float kLeastSum =
     1e-30f;  // factors whose largest is below this are 0: their step must be a normal number
@@ -20,9 +21,17 @@ constexpr float kMostGain = 1e16f;  // of a whole matrix; times kLargest still a
 // Tiles of more strips are taken by all threads together.
 constexpr std::size_t kLargeTile = 128;
 constexpr std::size_t kStripsAtOnce = 16;
+constexpr std::size_t kTilesAtOnce = 4;
+constexpr std::size_t kLineBytes = 64;
 constexpr std::size_t kSharedAtOnce = 4096;
 
 constexpr std::size_t roundedUp(std::size_t n, std::size_t step) { return (n + step - 1) / step * step; }
+
+// So many of `count` components at a time that all turns are about equal.
+constexpr std::size_t weighedTogether(std::size_t count) {
+  const std::size_t turns = roundedUp(std::max<std::size_t>(count, 1), kTogether) / kTogether;
+  return std::max<std::size_t>((count + turns - 1) / turns, 1);
+}
 
 void checkGain(const codec::BlockMatrix& m) {
   double gain = 0;
@@ -34,10 +43,10 @@ void checkGain(const codec::BlockMatrix& m) {
 }
 
 // The digit of an 8-bit plane: of one, or the high and the low one of two.
-std::int8_t digitOf(int q, std::size_t digit, std::size_t digits) {
-  if (digits == 1) return static_cast<std::int8_t>(q);
+int digitOf(int q, std::size_t digit, std::size_t digits) {
+  if (digits == 1) return q;
   const int high = (q + (q < 0 ? -kHighDigit / 2 : kHighDigit / 2)) / kHighDigit;
-  return static_cast<std::int8_t>(digit == 0 ? high : std::clamp(q - kHighDigit * high, -127, 127));
+  return digit == 0 ? high : std::clamp(q - kHighDigit * high, -127, 127);
 }
 
 }  // namespace
@@ -49,9 +58,9 @@ BlockProduct::BlockProduct(const codec::BlockMatrix& m, const ProductKernels& ke
   placeBlocks(m);
   const std::vector<std::uint32_t> places = placeRows(m);
   if (m.bits == 8)
-    copySamples(m, places, m.planes8, m.weights8, weights8_);
+    copySamples(m, places, m.planes8, m.weights8);
   else
-    copySamples(m, places, m.planes16, m.weights16, weights16_);
+    copySamples(m, places, m.planes16, m.weights16);
 }
 
 void BlockProduct::placeColumns(const codec::BlockMatrix& m) {
@@ -67,31 +76,35 @@ void BlockProduct::placeColumns(const codec::BlockMatrix& m) {
 }
 
 void BlockProduct::placeBlocks(const codec::BlockMatrix& m) {
-  std::size_t rows = 0, samples = 0, factors = 0, steps = 0, weights = 0, lit = 0;
+  std::size_t rows = 0, bytes = 0, factors = 0, steps = 0, lit = 0;
   for (std::size_t t = 0; t < m.tiles(); ++t) {
+    Tile tile{};
+    tile.lines.begin = bytes / kLineBytes;
     const std::size_t first_block = t * m.clusters();
     for (std::size_t c = 0; c < m.clusters(); ++c) {
       const Range components{m.component_first[first_block + c], m.component_first[first_block + c + 1]};
-      blocks_.push_back({components, weights});
-      weights += (components.end - components.begin) * clusters_[c].columns;
+      blocks_.push_back({components, bytes});
+      bytes += (components.end - components.begin) * clusters_[c].columns * digits_;
     }
-    Tile tile{};
+    bytes = roundedUp(bytes, kLineBytes);
     tile.strips = roundedUp(m.tile_first[t + 1] - m.tile_first[t], kStripRows) / kStripRows;
     tile.components = {m.component_first[first_block], m.component_first[first_block + m.clusters()]};
-    tile.pairs = roundedUp((tile.components.end - tile.components.begin) * digits_, 2) / 2;
-    tile.rows = rows, tile.planes = samples, tile.factors = factors, tile.steps = steps,
+    tile.quads = roundedUp((tile.components.end - tile.components.begin) * digits_, kQuad) / kQuad;
+    tile.rows = rows, tile.planes = bytes, tile.factors = factors, tile.steps = steps,
     tile.blocks = first_block, tile.lit = lit;
-    const std::size_t groups = roundedUp(tile.pairs, kGroupPairs) / kGroupPairs;
-    rows += tile.strips * kStripRows, samples += tile.strips * channels_ * tile.pairs * 2 * kStripRows;
-    factors += kChannels * tile.pairs * 2, steps += groups * kChannels, lit += m.clusters() + groups;
+    const std::size_t groups = roundedUp(tile.quads, kGroupQuads) / kGroupQuads;
+    rows += tile.strips * kStripRows, bytes += tile.strips * tile.quads * channels_ * kStripRows * kQuad;
+    factors += tile.quads * kChannels * kQuad, steps += groups * kChannels, lit += m.clusters() + groups;
+    tile.lines.end = bytes / kLineBytes;
     tiles_.push_back(tile);
   }
+  static_assert(kStripRows * kQuad % kLineBytes == 0);
   target_.resize(rows);
-  planes_.resize(samples);
+  stream_.resize(bytes / kLineBytes);
   factors_.resize(factors);
   steps_.resize(steps);
+  starts_.resize(steps);
   lit_.resize(lit);
-  (digits_ == 1 ? weights8_.resize(weights) : weights16_.resize(weights));
   // A weight counts q |q| / max^2.
   const float most = digits_ == 1 ? 127.0f : 32767.0f;
   for (const float s : m.scale) scale_.push_back(s / (most * most));
@@ -131,8 +144,7 @@ std::vector<std::uint32_t> BlockProduct::placeRows(const codec::BlockMatrix& m) 
 
 template <class Q>
 void BlockProduct::copySamples(const codec::BlockMatrix& m, std::span<const std::uint32_t> places,
-                               const std::vector<Q>& planes, const std::vector<Q>& weights,
-                               std::vector<Q>& weights_out) {
+                               const std::vector<Q>& planes, const std::vector<Q>& weights) {
   sample_bytes_ = (planes.size() + weights.size()) * sizeof(Q);
   const Q* plane = planes.data();
   const Q* weight = weights.data();
@@ -143,22 +155,32 @@ void BlockProduct::copySamples(const codec::BlockMatrix& m, std::span<const std:
     const std::size_t columns = m.cluster_first[c + 1] - m.cluster_first[c];
     const auto place = places.subspan(m.tile_first[t], m.tile_first[t + 1] - m.tile_first[t]);
     for (std::size_t k = components.begin; k < components.end; ++k, weight += columns) {
-      const std::size_t first = k - (k - components.begin) % kTogether;  // of those that are weighed with k
-      const std::size_t count = std::min(kTogether, components.end - first);
-      Q* out = weights_out.data() + blocks_[b].weights + (first - components.begin) * clusters_[c].columns;
+      const std::size_t together = weighedTogether(components.end - components.begin);
+      const std::size_t first = k - (k - components.begin) % together;  // of those that are weighed with k
+      const std::size_t count = std::min(together, components.end - first);
+      std::byte* out =
+          stream() + blocks_[b].weights + (first - components.begin) * clusters_[c].columns * sizeof(Q);
       for (std::size_t j = 0; j < columns; ++j)
-        out[(j / kLanes * count + k - first) * kLanes + j % kLanes] = weight[j];
+        std::memcpy(out + ((j / kLanes * count + k - first) * kLanes + j % kLanes) * sizeof(Q), weight + j,
+                    sizeof(Q));
       for (std::size_t channel = 0; channel < channels_; ++channel, plane += place.size())
         for (std::size_t digit = 0; digit < digits_; ++digit) {
           const std::size_t p = (k - tile.components.begin) * digits_ + digit;
           for (std::size_t i = 0; i < place.size(); ++i) {
             const std::size_t strip = place[i] / kStripRows, row = place[i] % kStripRows;
-            const std::size_t at = ((strip * tile.pairs + p / 2) * channels_ + channel) * kStripRows + row;
-            planes_[tile.planes + 2 * at + p % 2] = digitOf(plane[i], digit, digits_);
+            const std::size_t quad = (strip * tile.quads + p / kQuad) * channels_ + channel;
+            stream()[tile.planes + (quad * kStripRows + row) * kQuad + p % kQuad] =
+                static_cast<std::byte>(digitOf(plane[i], digit, digits_) + kPlaneZero);
           }
         }
     }
   }
+}
+
+Ahead BlockProduct::after(const Tile& tile) const {
+  const std::size_t next = static_cast<std::size_t>(&tile - tiles_.data()) + 1;
+  const std::size_t end = next < tiles_.size() ? tiles_[next].lines.end : tile.lines.end;
+  return {stream() + tile.lines.end * kLineBytes, stream() + end * kLineBytes};
 }
 
 void BlockProduct::gather(std::span<const Irradiance> x) {
@@ -175,72 +197,86 @@ void BlockProduct::gather(std::span<const Irradiance> x) {
   }
 }
 
-void BlockProduct::weigh(const Tile& tile, std::size_t c) {
+void BlockProduct::weigh(const Tile& tile, std::size_t c, Ahead& ahead) {
   const Cluster& cluster = clusters_[c];
   const Block& block = blocks_[tile.blocks + c];
+  const std::size_t stride = scale_.size();
   if (cluster.dark) {
-    std::fill(sum_.data() + kChannels * block.components.begin,
-              sum_.data() + kChannels * block.components.end, 0.0f);
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      std::fill(sum_.data() + channel * stride + block.components.begin,
+                sum_.data() + channel * stride + block.components.end, 0.0f);
     return;
   }
-  Weighing w{x_.data() + cluster.first, x_stride_, cluster.columns, 0, {}};
-  std::size_t at = block.weights;
+  Weighing w{x_.data() + cluster.first, x_stride_, cluster.columns, 0, {}, ahead};
+  const std::byte* weights = stream() + block.weights;
+  const std::size_t together = weighedTogether(block.components.end - block.components.begin);
   for (std::size_t k = block.components.begin; k < block.components.end; k += w.count) {
-    w.count = std::min(kTogether, block.components.end - k);
-    digits_ == 1 ? kernels_.weigh8(weights8_.data() + at, w) : kernels_.weigh16(weights16_.data() + at, w);
-    at += w.count * cluster.columns;
-    for (std::size_t i = 0; i < w.count; ++i)
-      for (std::size_t channel = 0; channel < kChannels; ++channel)
-        sum_[kChannels * (k + i) + channel] = scale_[k + i] * w.sums[channel][i];
+    w.count = std::min(together, block.components.end - k);
+    digits_ == 1 ? kernels_.weigh8(reinterpret_cast<const std::int8_t*>(weights), w)
+                 : kernels_.weigh16(reinterpret_cast<const std::int16_t*>(weights), w);
+    weights += w.count * cluster.columns * digits_;
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      for (std::size_t i = 0; i < w.count; ++i)
+        sum_[channel * stride + k + i] = scale_[k + i] * w.sums[channel][i];
   }
+  ahead = w.ahead;
 }
 
+// Loops are such that compilers make vector code of them.
 void BlockProduct::chooseFactors(Tile& tile) {
-  const std::size_t group_components = 2 * kGroupPairs / digits_;
-  float* steps = steps_.data() + tile.steps;
-  for (std::size_t first = tile.components.begin; first < tile.components.end;
-       first += group_components, steps += kChannels) {
-    const std::size_t last = std::min(first + group_components, tile.components.end);
-    float largest[kChannels] = {}, inverse[kChannels];
-    for (std::size_t k = first; k < last; ++k)
-      for (std::size_t c = 0; c < kChannels; ++c)
-        largest[c] = std::max(largest[c], std::abs(sum_[kChannels * k + c]));
-    const float digit = digits_ == 1 ? 1.0f : kHighDigit;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      const bool tells = largest[c] > kLeastSum;
-      steps[c] = tells ? digit * largest[c] / kMostFactor : 0.0f;
-      inverse[c] = tells ? 1 / steps[c] : 0.0f;
-    }
-    const auto factorOf = [](float s) {
-      const float f = std::clamp(s, -kMostFactor, kMostFactor);
-      return static_cast<std::int16_t>(f + (f < 0 ? -0.5f : 0.5f));
-    };
-    std::int16_t* factors = factors_.data() + tile.factors;
-    for (std::size_t k = first; k < last; ++k)
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        const std::size_t p = k - tile.components.begin;
-        const float s = inverse[c] * sum_[kChannels * k + c];
-        if (digits_ == 1) {
-          factors[(p / 2 * kChannels + c) * 2 + p % 2] = factorOf(s);
-        } else {
-          factors[(p * kChannels + c) * 2] = factorOf(digit * s);
-          factors[(p * kChannels + c) * 2 + 1] = factorOf(s);
+  constexpr std::size_t kGroupPlanes = kGroupQuads * kQuad;
+  const std::size_t group_components = kGroupPlanes / digits_;
+  const float digit = digits_ == 1 ? 1.0f : kHighDigit;
+  std::int16_t* factors = factors_.data() + tile.factors;
+  for (std::size_t first = tile.components.begin, step = tile.steps; first < tile.components.end;
+       first += group_components, factors += kGroupPlanes * kChannels) {
+    const std::size_t count = std::min(group_components, tile.components.end - first);
+    const std::size_t quads = roundedUp(count * digits_, kQuad) / kQuad;
+    for (std::size_t c = 0; c < kChannels; ++c, ++step) {
+      const float* sum = sum_.data() + c * scale_.size() + first;
+      std::uint32_t largest_bits = 0;  // magnitudes are in the order of their bits
+      for (std::size_t k = 0; k < count; ++k)
+        largest_bits = std::max(largest_bits, std::bit_cast<std::uint32_t>(std::abs(sum[k])));
+      const auto largest = std::bit_cast<float>(largest_bits);
+      const bool tells = largest > kLeastSum;
+      steps_[step] = tells ? digit * largest / kMostFactor : 0.0f;
+      const float inverse = tells ? 1 / steps_[step] : 0.0f;
+      const auto nearest = [](float f) {
+        return static_cast<std::int16_t>(static_cast<int>(f + std::copysign(0.5f, f)));
+      };
+      alignas(32) std::int16_t planes[kGroupPlanes];
+      if (digits_ == 1) {
+        for (std::size_t k = 0; k < count; ++k) planes[k] = nearest(inverse * sum[k]);
+      } else {
+        for (std::size_t k = 0; k < count; ++k) {
+          planes[2 * k] = nearest(digit * (inverse * sum[k]));
+          planes[2 * k + 1] = nearest(inverse * sum[k]);
         }
       }
+      std::fill(planes + count * digits_, planes + quads * kQuad, std::int16_t{0});
+      int total = 0;
+      for (std::size_t p = 0; p < quads * kQuad; ++p) total += planes[p];
+      starts_[step] = -kPlaneZero * total;
+      for (std::size_t q = 0; q < quads; ++q)
+        std::memcpy(factors + (q * kChannels + c) * kQuad, planes + q * kQuad, kQuad * sizeof planes[0]);
+    }
   }
+  kernels_.pack_factors(factors_.data() + tile.factors, tile.quads * kChannels);
+}
 
+void BlockProduct::chooseRanges(Tile& tile) {
   tile.lit_count = 0;
-  PairRange* lit = lit_.data() + tile.lit;
-  std::size_t taken = 0;  // pairs: two clusters may share one
+  QuadRange* lit = lit_.data() + tile.lit;
+  std::size_t taken = 0;  // quads: two clusters may share one
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
     const Range components = blocks_[tile.blocks + c].components;
     if (clusters_[c].dark || components.begin == components.end) continue;
-    const std::size_t end = ((components.end - tile.components.begin) * digits_ + 1) / 2;
-    taken = std::max(taken, (components.begin - tile.components.begin) * digits_ / 2);
+    const std::size_t end = roundedUp((components.end - tile.components.begin) * digits_, kQuad) / kQuad;
+    taken = std::max(taken, (components.begin - tile.components.begin) * digits_ / kQuad);
     while (taken < end) {
-      const std::size_t last = std::min(end, (taken / kGroupPairs + 1) * kGroupPairs);
+      const std::size_t last = std::min(end, (taken / kGroupQuads + 1) * kGroupQuads);
       const bool goes_on =
-          tile.lit_count > 0 && lit[tile.lit_count - 1].end == taken && taken % kGroupPairs != 0;
+          tile.lit_count > 0 && lit[tile.lit_count - 1].end == taken && taken % kGroupQuads != 0;
       if (goes_on)
         lit[tile.lit_count - 1].end = last;
       else
@@ -250,19 +286,26 @@ void BlockProduct::chooseFactors(Tile& tile) {
   }
 }
 
-void BlockProduct::addStrips(const Tile& tile, std::size_t first, std::size_t last, std::span<Irradiance> y) {
-  const std::size_t strip_bytes = tile.pairs * channels_ * 2 * kStripRows;
-  StripPlanes strip{planes_.data() + tile.planes + first * strip_bytes, factors_.data() + tile.factors,
-                    steps_.data() + tile.steps, lit_.data() + tile.lit, tile.lit_count};
+void BlockProduct::addStrips(const Tile& tile, std::size_t first, std::size_t last, std::span<Irradiance> y,
+                             Ahead ahead) {
+  const std::size_t strip_bytes = tile.quads * channels_ * kStripRows * kQuad;
+  StripPlanes strip{reinterpret_cast<const std::uint8_t*>(stream()) + tile.planes + first * strip_bytes,
+                    factors_.data() + tile.factors,
+                    steps_.data() + tile.steps,
+                    starts_.data() + tile.steps,
+                    lit_.data() + tile.lit,
+                    tile.lit_count,
+                    ahead};
+  const AddStripFunction add = channels_ == 1 ? kernels_.add_shared_strip : kernels_.add_strip;
   const std::uint32_t* target = target_.data() + tile.rows + first * kStripRows;
   for (std::size_t s = first; s < last; ++s, strip.planes += strip_bytes, target += kStripRows) {
-    alignas(64) float rows[kStripRows][4];
-    (channels_ == 1 ? kernels_.add_shared_strip : kernels_.add_strip)(strip, rows);
+    alignas(64) float rows[kStripRows + 1][kChannels];  // one more for kernels that write four numbers
+    add(strip, rows);
     const std::size_t row = s * kStripRows, count = std::min(kStripRows, tile.held - row);
     const std::size_t sole = std::clamp(tile.sole, row, row + count) - row;
-    for (std::size_t i = 0; i < sole; ++i) y[target[i]] = Irradiance({rows[i][0], rows[i][1], rows[i][2]});
-    for (std::size_t i = sole; i < count; ++i)
-      shared_[target[i]] = Irradiance({rows[i][0], rows[i][1], rows[i][2]});
+    static_assert(sizeof(Irradiance) == sizeof rows[0] && std::is_trivially_copyable_v<Irradiance>);
+    for (std::size_t i = 0; i < sole; ++i) std::memcpy(&y[target[i]], rows[i], sizeof rows[i]);
+    for (std::size_t i = sole; i < count; ++i) std::memcpy(&shared_[target[i]], rows[i], sizeof rows[i]);
   }
 }
 
@@ -274,31 +317,35 @@ void BlockProduct::multiply(std::span<const Irradiance> x, std::span<Irradiance>
     std::span<Irradiance> y;
     Tile* large = nullptr;
   } job{*this, y};
-  parallelFor(tiles_.size(), 1, [&job](std::size_t begin, std::size_t end) {
+  parallelFor(tiles_.size(), kTilesAtOnce, [&job](std::size_t begin, std::size_t end) {
     for (; begin < end; ++begin) {
       Tile& tile = job.self.tiles_[begin];
       if (tile.strips > kLargeTile) continue;
-      for (std::size_t c = 0; c < job.self.clusters_.size(); ++c) job.self.weigh(tile, c);
+      Ahead ahead = job.self.after(tile);
+      for (std::size_t c = 0; c < job.self.clusters_.size(); ++c) job.self.weigh(tile, c, ahead);
       job.self.chooseFactors(tile);
-      job.self.addStrips(tile, 0, tile.strips, job.y);
+      job.self.chooseRanges(tile);
+      job.self.addStrips(tile, 0, tile.strips, job.y, ahead);
     }
   });
   for (Tile& tile : tiles_) {
     if (tile.strips <= kLargeTile) continue;
     job.large = &tile;
     parallelFor(clusters_.size(), 1, [&job](std::size_t begin, std::size_t end) {
-      for (; begin < end; ++begin) job.self.weigh(*job.large, begin);
+      Ahead none;
+      for (; begin < end; ++begin) job.self.weigh(*job.large, begin, none);
     });
     chooseFactors(tile);
+    chooseRanges(tile);
     parallelFor(tile.strips, kStripsAtOnce, [&job](std::size_t begin, std::size_t end) {
-      job.self.addStrips(*job.large, begin, end, job.y);
+      job.self.addStrips(*job.large, begin, end, job.y, {});
     });
   }
   parallelFor(shared_row_.size(), kSharedAtOnce, [&job](std::size_t begin, std::size_t end) {
     for (; begin < end; ++begin) {
-      Irradiance sum;
-      for (std::size_t i = job.self.shared_first_[begin]; i < job.self.shared_first_[begin + 1]; ++i)
-        sum += job.self.shared_[i];
+      const std::size_t first = job.self.shared_first_[begin], last = job.self.shared_first_[begin + 1];
+      Irradiance sum = job.self.shared_[first] + job.self.shared_[first + 1];
+      for (std::size_t i = first + 2; i < last; ++i) sum += job.self.shared_[i];
       job.y[job.self.shared_row_[begin]] = sum;
     }
   });
