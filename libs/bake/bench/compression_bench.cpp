@@ -131,8 +131,9 @@ const bool registered = [] {
   for (const double error : {0.1, 0.05, 0.02, 0.01}) {
     const std::string percent = fmt::format("{:g}", 100 * error);
     for (const std::size_t n : {1u, 2u, 3u, 4u})
-      once(benchmark::RegisterBenchmark(fmt::format("compression.tiles.{}.{}", n, percent).c_str(), tiles, n,
-                                        codec::TileOptions{.error = error, .row_error = 5 * error}));
+      once(benchmark::RegisterBenchmark(
+          fmt::format("compression.tiles.{}.{}", n, percent).c_str(), tiles, n,
+          codec::TileOptions{.error = error, .row_error = std::min(15 * error, 0.75), .row_bytes = 0.3}));
     once(benchmark::RegisterBenchmark(fmt::format("compression.tiles-overall.3.{}", percent).c_str(), tiles,
                                       3u, codec::TileOptions{.error = error, .row_error = 0}));
     for (const std::size_t n : {1u, 16u, 32u})

@@ -38,11 +38,15 @@ constexpr std::array<Preset, 4> kPresets = {
 constexpr std::uint32_t kTrainingLights = 768, kHeldOutLights = 64;
 constexpr float kNormalTerm = 4.0f;             // entries' sides that a turned normal counts as, in clusters
 constexpr std::size_t kColumnsOfCluster = 384;  // about
+// Dark exits: errors of them may be so many times those overall. Below that, in halls, the noise of what is
+// encoded is larger.
+constexpr double kRowErrors = 15, kMostRowError = 0.75;
+constexpr double kRowBytes = 0.3;  // that their bound may cost, of what all else takes
 constexpr std::size_t kPaperClusters = 32, kPaperComponents = 8;
 
 struct Coding {
   bool clustered_pca = false;
-  double error = 0.02;
+  double error = 0.02, row_error = 0;        ///< overall, and in dark exits
   std::size_t clusters = 0, components = 0;  // 0: chosen here
   std::uint32_t bits = 8;
 };
@@ -109,6 +113,7 @@ Coding codingOf(const LayerContext& context, const Parameters& parameters) {
   coding.components = count(parameters, "components", 0);
   coding.error = given(parameters, "error",
                        coding.components > 0 || coding.clustered_pca ? 0 : presetOf(context.quality).error);
+  coding.row_error = given(parameters, "dark", std::min(kRowErrors * coding.error, kMostRowError));
   coding.bits = word(parameters, "bits") == "16" ? 16 : 8;
   return coding;
 }
@@ -134,6 +139,7 @@ Digest keyOf(const LightPathOptions& o, const Coding& c) {
       .add(o.seed)
       .add(c.clustered_pca)
       .add(c.error)
+      .add(c.row_error)
       .add(c.clusters)
       .add(c.components)
       .add(c.bits)
@@ -196,8 +202,16 @@ asset::Entries storedEntries(const transport::Entries& entries) {
 
 struct Encoded {
   codec::BlockMatrix matrix;
-  double error = 0;
+  codec::EncodeReport report;
 };
+
+/// What the encoding cost and lost, for those who inspect the bake.
+std::map<std::string, asset::Parameter> costOf(const Encoded& encoded) {
+  const auto exits = static_cast<double>(encoded.matrix.rows);
+  return {{"exit_bytes", static_cast<double>(encoded.report.bytes) / exits},
+          {"dark_bytes", static_cast<double>(encoded.report.row_bytes) / exits},
+          {"dark_error", encoded.report.error.row_p95}};
+}
 
 Encoded encode(const codec::Transfer& matrix, const codec::ColumnClusters& columns,
                const codec::Lights& lights, const Coding& coding, Progress& progress) {
@@ -209,17 +223,16 @@ Encoded encode(const codec::Transfer& matrix, const codec::ColumnClusters& colum
                                               .error = coding.error,
                                               .bits = coding.bits},
                                              &progress);
-    return {std::move(encoded.matrix), encoded.report.error.mean};
+    return {std::move(encoded.matrix), std::move(encoded.report)};
   }
-  auto encoded =
-      codec::encodeTiles(matrix, columns, lights,
-                         {.error = coding.error,
-                          // A bound on dark rows too would take many times the work and bytes in halls.
-                          .row_error = 0,
-                          .rank = coding.components,
-                          .bits = coding.bits},
-                         &progress);
-  return {std::move(encoded.matrix), encoded.report.error.mean};
+  auto encoded = codec::encodeTiles(matrix, columns, lights,
+                                    {.error = coding.error,
+                                     .row_error = coding.row_error,
+                                     .row_bytes = kRowBytes,
+                                     .rank = coding.components,
+                                     .bits = coding.bits},
+                                    &progress);
+  return {std::move(encoded.matrix), std::move(encoded.report)};
 }
 
 WholeLayer solveLightPaths(const LayerContext& context, const LightPathOptions& options, const Coding& coding,
@@ -234,14 +247,15 @@ WholeLayer solveLightPaths(const LayerContext& context, const LightPathOptions& 
   const codec::ColumnClusters columns = clusterEntries(paths.entries(), paths.spacing(), clusters);
   const codec::Transfer matrix = matrixOf(paths);
   Encoded encoded = encode(matrix, columns, lights, coding, progress);
+  WholeLayer solved;
+  solved.layer.parameters = costOf(encoded);
+  solved.layer.error_estimate = encoded.report.error.mean;
   const asset::Transfer transfer{
       .matrix = std::move(encoded.matrix),
       .entries = storedEntries(paths.entries()),
       .exits = {.side = options.exit_side, .exit_of_texel = paths.exits().of_texel},
       .near_share = options.near > 0 ? paths.nearShares(progress) : std::vector<Vec3>()};
-  WholeLayer solved;
   solved.layer.tables = asset::transferTables(transfer, context.table);
-  solved.layer.error_estimate = encoded.error;
   solved.layer.samples = options.exit_rays;
   solved.rays = paths.rays();
   return solved;

@@ -36,6 +36,7 @@ std::string toJson(const Statistics& s) {
                              {"seconds", layer.seconds},
                              {"reused_texels", layer.reused_texels},
                              {"computed_texels", layer.computed_texels}});
+    if (!layer.measured.empty()) out["layers"].back()["measured"] = layer.measured;
   }
   return out.dump(2) + "\n";
 }

@@ -74,6 +74,10 @@ BakedLayer bakeWhole(const LayerTask& task, Progress& progress) {
     keep(file, found);
   }
   baked.layer = describe(prepared);
+  for (const auto& [name, value] : found.parameters) {
+    baked.layer.parameters[name] = value;
+    if (const double* number = std::get_if<double>(&value)) baked.numbers.measured[name] = *number;
+  }
   baked.layer.planes = std::move(found.planes);
   baked.layer.tables = std::move(found.tables);
   baked.layer.samples = found.samples;

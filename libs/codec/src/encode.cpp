@@ -85,19 +85,24 @@ EncodeError measureProducts(std::span<const float> given, std::span<const float>
   const std::size_t size = rows * channels, lights = size == 0 ? 0 : truth.size() / size;
   EncodeError out;
   std::vector<float> of_light, of_row;
+  std::vector<double> row_error(rows), row_total(rows);  // squared
   for (std::size_t l = 0; l < lights; ++l) {
     double error = 0, total = 0;
     for (std::size_t r = 0; r < rows; ++r) {
-      double row_error = 0, row_total = 0;
+      row_error[r] = row_total[r] = 0;
       for (std::size_t i = l * size + r * channels; i < l * size + (r + 1) * channels; ++i) {
-        row_error += (static_cast<double>(given[i]) - truth[i]) * (static_cast<double>(given[i]) - truth[i]);
-        row_total += static_cast<double>(truth[i]) * truth[i];
+        const double off = static_cast<double>(given[i]) - truth[i];
+        row_error[r] += off * off;
+        row_total[r] += static_cast<double>(truth[i]) * truth[i];
       }
-      error += row_error;
-      total += row_total;
-      if (row_total > 0) of_row.push_back(static_cast<float>(std::sqrt(row_error / row_total)));
+      error += row_error[r];
+      total += row_total[r];
     }
-    if (total > 0) of_light.push_back(static_cast<float>(std::sqrt(error / total)));
+    if (!(total > 0)) continue;
+    of_light.push_back(static_cast<float>(std::sqrt(error / total)));
+    const double least = kRowFloor * kRowFloor * total / static_cast<double>(rows);
+    for (std::size_t r = 0; r < rows; ++r)
+      of_row.push_back(static_cast<float>(std::sqrt(row_error[r] / std::max(row_total[r], least))));
   }
   if (of_light.empty()) return out;
   out.mean = std::accumulate(of_light.begin(), of_light.end(), 0.0) / static_cast<double>(of_light.size());

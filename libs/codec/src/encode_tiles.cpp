@@ -43,14 +43,19 @@ class Encoder {
   EncodedTiles encode(Progress* progress) {
     double margin = kFirstMargin;
     std::optional<Kept> kept;
+    std::size_t overall = 0;  // bytes that `error` alone takes
     for (int attempt = 0; attempt < kAttempts && !kept; ++attempt, margin *= kLessMargin) {
       codeTiles(margin * options_.error, progress);
-      kept = options_.error > 0 ? choose() : all();
+      kept = options_.error > 0 ? chooseOverall() : all();
+      if (!kept || options_.error <= 0) continue;
+      overall = bytesOf(*kept);
+      if (options_.row_error > 0) kept = chooseForRows(*kept, overall);
     }
     if (!kept) kept = all();
     EncodedTiles out;
     out.matrix = assemble(*kept);
     out.report = report(*kept, out.matrix);
+    if (overall > 0) out.report.row_bytes = bytesOf(*kept) - overall;
     return out;
   }
 
@@ -62,6 +67,14 @@ class Encoder {
     return transfer_.channels * transfer_.tiles.rows(b / clusters_.clusters());
   }
   std::size_t width(std::size_t b) const { return clusters_.columns(b % clusters_.clusters()); }
+  std::size_t componentBytes(std::size_t b) const {
+    return (height(b) + width(b)) * (options_.bits / 8) + sizeof(float);
+  }
+  std::size_t bytesOf(const Kept& kept) const {
+    std::size_t bytes = 0;
+    for (std::size_t b = 0; b < blocks(); ++b) bytes += kept[b] * componentBytes(b);
+    return bytes;
+  }
   // shape: [components + 1][training lights + 2]
   Eigen::Map<const Matrix> left(std::size_t b) const {
     return {block(b).left.data(), signedSize(block(b).components() + 1), coder_.trainingLights() + 2};
@@ -91,7 +104,7 @@ class Encoder {
           (tile.light_weight.array() > 0).select((tile.light_weight.array() * total.array()).inverse(), 0);
       const Eigen::VectorXd light = tile.light_weight.cwiseProduct(tile.response);
       const double plain = light.sum() > 0 ? tile.plain * overall.dot(light) / light.sum() : 0;
-      const auto bytes = static_cast<double>((height(b) + width(b)) * (options_.bits / 8) + sizeof(float));
+      const auto bytes = static_cast<double>(componentBytes(b));
       for (Index k = 0; k < signedSize(block(b).components()); ++k) {
         const Eigen::VectorXd taken = (left(b).row(k) - left(b).row(k + 1)).cast<double>();
         gain_[b].push_back((taken.head(lights).dot(overall) + plain * taken[lights]) / bytes);
@@ -120,9 +133,9 @@ class Encoder {
   // The components above the highest threshold that is good enough; none where all components are not.
   template <class Good>
   std::optional<Kept> bisect(const Gains& gains, const Kept& least, const Good& good) const {
-    if (good(measureKept(least))) return least;
+    if (good(least)) return least;
     Kept best = all();
-    if (!good(measureKept(best))) return std::nullopt;
+    if (!good(best)) return std::nullopt;
     double lo = std::numeric_limits<double>::max(), hi = 0;
     for (const std::vector<double>& block : gains)
       for (const double g : block)
@@ -130,7 +143,7 @@ class Encoder {
     for (int i = 0; i < kBisections && lo < hi; ++i) {
       const double middle = std::sqrt(lo) * std::sqrt(hi);
       Kept kept = above(gains, middle, least);
-      if (good(measureKept(kept))) {
+      if (good(kept)) {
         best = std::move(kept);
         lo = middle;
       } else {
@@ -141,13 +154,18 @@ class Encoder {
   }
 
   bool goodOverall(const EncodeError& e) const { return e.mean <= options_.error; }
-  bool good(const EncodeError& e) const {
-    return goodOverall(e) && (options_.row_error <= 0 || e.row_p95 <= options_.row_error);
+  bool goodForRows(const EncodeError& e) const {
+    return options_.row_error <= 0 || e.row_p95 <= options_.row_error;
   }
 
-  std::optional<Kept> choose() const {
-    const auto kept = bisect(gain_, Kept(blocks(), 0), [&](const EncodeError& e) { return goodOverall(e); });
-    return kept ? bisect(relative_gain_, *kept, [&](const EncodeError& e) { return good(e); }) : kept;
+  std::optional<Kept> chooseOverall() const {
+    return bisect(gain_, Kept(blocks(), 0), [&](const Kept& kept) { return goodOverall(measureKept(kept)); });
+  }
+  std::optional<Kept> chooseForRows(const Kept& least, std::size_t least_bytes) const {
+    const double most = (1 + options_.row_bytes) * static_cast<double>(least_bytes);
+    return bisect(relative_gain_, least, [&](const Kept& kept) {
+      return static_cast<double>(bytesOf(kept)) >= most || goodForRows(measureKept(kept));
+    });
   }
 
   EncodeError measureKept(const Kept& kept) const {
@@ -202,7 +220,7 @@ class Encoder {
   EncodeReport report(const Kept& kept, const BlockMatrix& m) const {
     EncodeReport out = sizesOf(m);
     out.error = measureKept(kept);
-    out.met = options_.error <= 0 || good(out.error);
+    out.met = options_.error <= 0 || (goodOverall(out.error) && goodForRows(out.error));
     double rounded = 0, unrounded = 0;
     for (std::size_t b = 0; b < blocks(); ++b) {
       const Index lights = coder_.trainingLights();

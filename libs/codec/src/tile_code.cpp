@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "tile_code.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "relume/core/check.h"
+#include "relume/core/parallel.h"
 
 namespace relume::codec {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kDimmest = 1e-6;  // a light weighs no more than one that gives a tile this share of the mean
+constexpr std::size_t kSampledTiles = 32;  // that tell how bright lights are, about
 constexpr double kDarkest = 0.1;  // of a light's root mean square in a tile: relative errors count from there
+constexpr double kLeast = 1e-12;  // of the mean response of a tile: what is not divided by
 constexpr float kNoLight = 1e-30f;  // of all lights, whose sums are 1
 
 Eigen::Map<const Matrix> lightMatrix(const std::vector<float>& lights, std::uint32_t columns) {
@@ -19,14 +22,17 @@ Eigen::Map<const Matrix> lightMatrix(const std::vector<float>& lights, std::uint
   return {lights.data(), signedSize(lights.size() / columns), signedSize(columns)};
 }
 
-// 1 / (truth^2 + darkest^2) of each row (all channels) and light, for products that were blended;
+// 1 / (truth^2 + darkest^2 + floor) of each row (all channels) and light, for products that were blended;
 // [height][lights]
-Matrix relativeWeights(const Matrix& product, const Eigen::VectorXf& blend, std::size_t channels) {
+Matrix relativeWeights(const Matrix& product, const Eigen::VectorXf& blend, const Eigen::VectorXd& floor,
+                       std::size_t channels) {
   const Index rows = product.rows() / signedSize(channels);
   Matrix square = Matrix::Zero(rows, product.cols());
   for (Index c = 0; c < signedSize(channels); ++c) square += product.middleRows(c * rows, rows).cwiseAbs2();
   const Eigen::RowVectorXf dark =
-      (kDarkest * kDarkest / static_cast<double>(rows) * square.cast<double>().colwise().sum()).cast<float>();
+      (kDarkest * kDarkest / static_cast<double>(rows) * square.cast<double>().colwise().sum() +
+       floor.transpose())
+          .cast<float>();
   for (Index r = 0; r < rows; ++r)
     square.row(r) = (square.row(r) / (blend[r] * blend[r]) + dark).cwiseMax(kNoLight).cwiseInverse();
   return square.replicate(signedSize(channels), 1);
@@ -49,6 +55,23 @@ TileCoder::TileCoder(const Transfer& transfer, const ColumnClusters& clusters, c
     if (sum > 0) training_.row(lit++) = (training_.row(l) / sum).eval();
   }
   training_.conservativeResize(lit, Eigen::NoChange);
+  floor_ = darkness();
+}
+
+// From some tiles, so that not all have to be read twice.
+Eigen::VectorXd TileCoder::darkness() const {
+  const std::size_t tiles = transfer_.tiles.tiles(), step = std::max<std::size_t>(tiles / kSampledTiles, 1);
+  std::vector<Eigen::VectorXd> of_tile((tiles + step - 1) / step);
+  double rows = 0;
+  for (std::size_t i = 0; i < of_tile.size(); ++i)
+    rows += static_cast<double>(transfer_.tiles.rows(i * step));
+  parallelFor(of_tile.size(), 1, [&](std::size_t i, std::size_t) {
+    of_tile[i] =
+        (tileRows(transfer_, i * step) * training_.transpose()).colwise().squaredNorm().cast<double>();
+  });
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(training_.rows());
+  for (const Eigen::VectorXd& tile : of_tile) sum += tile;
+  return kRowFloor * kRowFloor / std::max(rows, 1.0) * sum;
 }
 
 TileCode TileCoder::code(std::size_t tile, double error) const {
@@ -64,12 +87,17 @@ TileCode TileCoder::code(std::size_t tile, double error) const {
   out.response = product.colwise().squaredNorm().cast<double>();
   const double mean = out.response.size() > 0 ? out.response.mean() : 0;
   out.light_weight = Eigen::VectorXd::Zero(training_.rows());
-  if (mean > 0)
-    out.light_weight =
-        (1 - options_.dark_share) / mean + options_.dark_share / out.response.array().max(kDimmest * mean);
+  if (mean > 0) {
+    // A light that gives the tile no more than what counts as darkness weighs no more than that.
+    const Eigen::ArrayXd dark =
+        blend.squaredNorm() / static_cast<double>(transfer_.channels) * floor_.array();
+    out.light_weight = (1 - options_.dark_share) / mean +
+                       options_.dark_share / out.response.array().max(dark).max(kLeast * mean);
+  }
   const Eigen::VectorXf scale = out.light_weight.cwiseSqrt().cast<float>();
   product = product * scale.asDiagonal();
-  const Matrix relative = relativeWeights(product, blend, transfer_.channels);
+  const Matrix relative =
+      relativeWeights(product, blend, floor_.cwiseProduct(out.light_weight), transfer_.channels);
   const double energy = out.light_weight.dot(out.response), square = rows.squaredNorm();
   out.plain = square > 0 ? options_.plain_share * energy / square : 0;
 

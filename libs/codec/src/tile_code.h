@@ -33,6 +33,7 @@ class TileCoder {
   int max() const { return max_; }  ///< largest sample
 
  private:
+  Eigen::VectorXd darkness() const;
   Matrix weightsOf(const BlockCode& code, std::size_t width) const;
 
   const Transfer& transfer_;
@@ -40,6 +41,7 @@ class TileCoder {
   TileOptions options_;
   int max_;
   Matrix training_, held_out_;  // shape: [lights][columns]; training lights sum to 1
+  Eigen::VectorXd floor_;       // of each training light: squared product of a row that counts as dark
 };
 
 }  // namespace relume::codec

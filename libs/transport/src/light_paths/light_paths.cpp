@@ -62,7 +62,7 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
   require(o.exit_side >= 1 && o.exit_side <= 64, "exits of no or too many texels",
           "take 1 to 64 along a side");
   require(o.tile_exits > 0 && o.tile_overlap >= 0.0f && o.tile_overlap <= 4.0f, "impossible tiles",
-          "256 exits and an overlap of 0.3 are usual");
+          "128 exits and an overlap of 0.3 are usual");
   if (texels.points.empty())
     throw Error(ErrorCode::kEmptyScene, "light paths", "there are no texels", "bake a static mesh");
   LightPathOptions options = o;

@@ -73,7 +73,8 @@ struct LayerJob {
 
 /// A layer that is no rows of texels, solved whole.
 struct WholeLayer {
-  asset::Layer layer;      ///< planes, tables, samples and error_estimate
+  /// Planes, tables, samples and error_estimate; parameters that were measured, beside those asked for.
+  asset::Layer layer;
   std::uint64_t rays = 0;  ///< spent
 };
 struct WholeJob {

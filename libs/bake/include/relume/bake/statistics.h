@@ -2,6 +2,7 @@
 // What a bake did, in numbers.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct LayerStatistics {
   double error_estimate = 0;  ///< RMS over texels of the estimated standard error, relative to the RMS value
   double seconds = 0;         ///< tracing
   std::size_t reused_texels = 0, computed_texels = 0;
+  std::map<std::string, double> measured;  ///< what else its kind tells
 };
 
 struct Statistics {

@@ -58,16 +58,19 @@ struct EncodeError {
   /// Of ||error|| / ||truth|| of each light, norms over rows and channels.
   double mean = 0, median = 0, worst = 0;
   /// 95th percentile over all rows and lights of the error of a row relative to the row's own truth: what
-  /// dark rows show.
+  /// dark rows show. Rows with less than kRowFloor of a light's root mean square over all rows count as if
+  /// they had so much: that light shows nothing there, and they may be many.
   double row_p95 = 0;
 };
+inline constexpr double kRowFloor = 0.01;
 
 struct EncodeReport {
   EncodeError error;
   bool met = true;        ///< the bounds asked for are met
   std::size_t bytes = 0;  ///< of all arrays of the matrix
   std::size_t plane_bytes = 0, weight_bytes = 0, index_bytes = 0;
-  double overlap = 1;  ///< rows in tiles / rows
+  std::size_t row_bytes = 0;  ///< of `bytes`, what the bound of row_p95 took beside that of the mean
+  double overlap = 1;         ///< rows in tiles / rows
   /// Share of the squared error, as the encoder weighs it, that is due to rounding; the rest is what the
   /// components left out would have given.
   double rounding_share = 0;

@@ -6,6 +6,8 @@
 //   [Sloan03] Sloan, Hall, Hart, Snyder. Clustered Principal Components for Precomputed Radiance Transfer.
 //   2003.
 #pragma once
+#include <limits>
+
 #include "relume/codec/encode.h"
 #include "relume/core/progress.h"
 
@@ -15,11 +17,14 @@ struct TileOptions {
   /// Bound of EncodeError::mean; 0: every block gets `rank` components instead.
   double error = 0.02;
   /// Bound of EncodeError::row_p95, for dark rows; 0: none.
-  double row_error = 0.1;
+  double row_error = 0.3;
+  /// What that bound may cost, as a share of the bytes that `error` alone takes: where it would cost more it
+  /// is not met. Light that comes to dark rows by few rays is mostly noise, which takes any number of bytes.
+  double row_bytes = std::numeric_limits<double>::infinity();
   std::size_t rank = 16;        ///< of every block, where error is 0
   std::size_t most_rank = 128;  ///< of any block
   /// Weight of all columns alike beside that of the training lights. Without it, lights unlike those pay.
-  double plain_share = 0.1;
+  double plain_share = 0.03;
   /// Weight of the error relative to a tile's own light beside that of the error relative to all light.
   double dark_share = 0.5;
   std::uint32_t bits = 8;

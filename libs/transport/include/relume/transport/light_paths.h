@@ -54,7 +54,7 @@ struct LightPathOptions {
   float near = 0.0f;
   std::uint32_t exit_side = 4;     ///< texels along an exit, which is a block of one chart; 1 to 64
   std::uint32_t exit_rays = 1024;  ///< of an exit, rounded up to 2^k for each of its texels
-  std::uint32_t tile_exits = 256;  ///< exits of a tile, on average, without overlap
+  std::uint32_t tile_exits = 128;  ///< exits of a tile, on average, without overlap
   float tile_overlap = 0.3f;       ///< exits that a tile shares with its neighbours, as a share of its own
   Materials materials = Materials::kFull;
   std::vector<Box3> light_boxes;  ///< where lights may be; none: rooms, or all free space if there are none
