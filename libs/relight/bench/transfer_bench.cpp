@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Relighting with light path maps beside the rate at which this machine reads memory, measured in turn in the
-// same run. Sizes as the bake makes them: tiles of 256 exits that share a third with neighbours, 1,024
-// entries in 4 clusters, 10 components to a block.
+// same run. Sizes as the bake makes them: tiles of 128 exits that share a third with neighbours, 1,024
+// entries in 3 clusters, 12 components to a block.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 #include "../tests/made_bake.h"
 #include "block_product.h"
+#include "line_buffer.h"
 #include "relume/core/parallel.h"
 #include "relume/relight/transfer_relighter.h"
 
@@ -27,10 +28,10 @@ MadeMatrix usual(std::uint32_t exits, std::uint32_t bits) {
   return {.rows = exits,
           .columns = 1024,
           .bits = bits,
-          .tiles = exits / 256,
-          .clusters = 4,
-          .rank = 10,
-          .overlap = 80,
+          .tiles = exits / 128,
+          .clusters = 3,
+          .rank = 12,
+          .overlap = 38,
           .exact_rank = true};
 }
 
@@ -41,14 +42,22 @@ std::vector<Irradiance> lit(std::size_t count) {
   return x;
 }
 
-// All threads add up an array larger than any cache.
+// All threads add up an array larger than any cache, in ordinary pages or in large ones.
 class Reader {
  public:
-  explicit Reader(std::size_t bytes) : numbers_(bytes / sizeof(std::uint64_t), 1) {}
-  double bytes() const { return static_cast<double>(numbers_.size() * sizeof(std::uint64_t)); }
+  Reader(std::size_t bytes, bool large_pages) : count_(bytes / sizeof(std::uint64_t)) {
+    if (large_pages) {
+      lines_ = LineBuffer(bytes / sizeof(Line));
+      numbers_ = reinterpret_cast<const std::uint64_t*>(lines_.data());
+    } else {
+      ordinary_.assign(count_, 1);
+      numbers_ = ordinary_.data();
+    }
+  }
+  double bytes() const { return static_cast<double>(count_ * sizeof(std::uint64_t)); }
   std::uint64_t read() const {
     std::atomic<std::uint64_t> total = 0;
-    parallelFor(numbers_.size(), 1 << 17, [&](std::size_t begin, std::size_t end) {
+    parallelFor(count_, 1 << 17, [&](std::size_t begin, std::size_t end) {
       std::uint64_t sums[32] = {};
       for (; begin < end; begin += 32)
         for (std::size_t i = 0; i < 32; ++i) sums[i] += numbers_[begin + i];
@@ -58,23 +67,29 @@ class Reader {
   }
 
  private:
-  std::vector<std::uint64_t> numbers_;
+  std::size_t count_;
+  std::vector<std::uint64_t> ordinary_;
+  LineBuffer lines_;
+  const std::uint64_t* numbers_;
 };
 
-// The product alone, planes far larger than the caches. One pass of the reader before each product.
+// The product alone, planes far larger than the caches. The readers pass before each product.
 void product(benchmark::State& state) {
   const ThreadLimit limit(static_cast<int>(state.range(2)));
   const auto exits = static_cast<std::uint32_t>(state.range(0));
   const codec::BlockMatrix m = madeMatrix(usual(exits, static_cast<std::uint32_t>(state.range(1))));
   BlockProduct p(m);
-  const Reader reader(std::size_t{256} << 20);
+  const Reader ordinary(std::size_t{256} << 20, false), large(std::size_t{256} << 20, true);
   const auto x = lit(m.columns);
   std::vector<Irradiance> y(m.rows);
-  std::vector<double> read, multiplied;
+  std::vector<double> read, read_large, multiplied;
   for (auto _ : state) {
     auto start = Clock::now();
-    benchmark::DoNotOptimize(reader.read());
+    benchmark::DoNotOptimize(ordinary.read());
     read.push_back(secondsSince(start));
+    start = Clock::now();
+    benchmark::DoNotOptimize(large.read());
+    read_large.push_back(secondsSince(start));
     start = Clock::now();
     p.multiply(x, y);
     multiplied.push_back(secondsSince(start));
@@ -85,13 +100,15 @@ void product(benchmark::State& state) {
     std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
     return v[v.size() / 2];
   };
-  const double memory = reader.bytes() / median(read);
+  const double memory = ordinary.bytes() / median(read), memory_large = large.bytes() / median(read_large);
   const double rate = static_cast<double>(p.sampleBytes()) / median(multiplied);
   state.counters["megabytes"] = static_cast<double>(p.sampleBytes()) * 1e-6;
   state.counters["bytes_per_exit"] = static_cast<double>(p.sampleBytes()) / exits;
   state.counters["memory_bytes_per_second"] = memory;
   state.counters["bytes_per_second"] = rate;
   state.counters["ratio"] = rate / memory;
+  state.counters["large_page_bytes_per_second"] = memory_large;
+  state.counters["large_page_ratio"] = rate / memory_large;
 }
 BENCHMARK(product)
     ->Name("relight.transfer.product")

@@ -22,7 +22,7 @@ constexpr float kMostGain = 1e16f;  // of a whole matrix; times kLargest still a
 constexpr std::size_t kLargeTile = 128;
 constexpr std::size_t kStripsAtOnce = 16;
 constexpr std::size_t kTilesAtOnce = 4;
-constexpr std::size_t kLineBytes = 64;
+constexpr std::size_t kLineBytes = sizeof(Line);
 constexpr std::size_t kSharedAtOnce = 4096;
 
 constexpr std::size_t roundedUp(std::size_t n, std::size_t step) { return (n + step - 1) / step * step; }
@@ -100,7 +100,7 @@ void BlockProduct::placeBlocks(const codec::BlockMatrix& m) {
   }
   static_assert(kStripRows * kQuad % kLineBytes == 0);
   target_.resize(rows);
-  stream_.resize(bytes / kLineBytes);
+  stream_ = LineBuffer(bytes / kLineBytes);
   factors_.resize(factors);
   steps_.resize(steps);
   starts_.resize(steps);

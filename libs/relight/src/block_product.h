@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "line_buffer.h"
 #include "product_kernels.h"
 #include "relume/codec/block_matrix.h"
 #include "relume/core/quantity.h"
@@ -68,9 +69,6 @@ class BlockProduct {
     std::size_t blocks;   ///< first in blocks_, one for each cluster
     std::size_t lit, lit_count;  ///< ranges in lit_
   };
-  struct alignas(64) Line {
-    std::byte bytes[64];
-  };
 
   void placeColumns(const codec::BlockMatrix& m);
   std::vector<std::uint32_t> placeRows(const codec::BlockMatrix& m);
@@ -79,8 +77,8 @@ class BlockProduct {
   void copySamples(const codec::BlockMatrix& m, std::span<const std::uint32_t> places,
                    const std::vector<Q>& planes, const std::vector<Q>& weights);
 
-  std::byte* stream() { return stream_.data()->bytes; }
-  const std::byte* stream() const { return stream_.data()->bytes; }
+  std::byte* stream() { return stream_.data(); }
+  const std::byte* stream() const { return stream_.data(); }
   /// What is fetched while `tile` is worked on.
   Ahead after(const Tile& tile) const;
   void gather(std::span<const Irradiance> x);
@@ -98,7 +96,7 @@ class BlockProduct {
   std::vector<Tile> tiles_;
   std::vector<Block> blocks_;
   /// Of each tile the weights, as kernels read them, of cluster after cluster, and the planes.
-  std::vector<Line> stream_;
+  LineBuffer stream_;
   std::vector<float> scale_;           ///< by component
   std::vector<float> sum_;             ///< s; shape: [3][components]
   std::vector<std::int16_t> factors_;  ///< s in units of its step

@@ -20,36 +20,45 @@ RELUME_AVX2 inline __m256i eight(const std::int16_t* q) {
   return _mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(q)));
 }
 
+struct HalfSums {
+  __m256 of[kChannels][kSome];
+};
+
 // Half of the lanes of some components, for want of registers.
 template <std::size_t kCount, class Q>
-RELUME_AVX2 void weighHalf(const Q* weights, Weighing& w, std::size_t half, __m256 (*lanes)[kSome]) {
-  for (std::size_t c = 0; c < kChannels; ++c)
-    for (std::size_t k = 0; k < kSome; ++k) lanes[c][k] = _mm256_setzero_ps();
+RELUME_AVX2 inline HalfSums weighHalf(const Q* weights, Weighing& w, std::size_t half) {
+  HalfSums lanes;
+  for (auto& channel : lanes.of)
+    for (__m256& lane : channel) lane = _mm256_setzero_ps();
   const __m256 sign = _mm256_set1_ps(-0.0f);
   const float *red = w.x + half, *green = red + w.stride, *blue = green + w.stride;
+  const std::size_t columns = w.columns, step = w.count * kLanes;
+  Ahead ahead = w.ahead;
   weights += half;
-  for (std::size_t j = 0; j < w.columns; j += kLanes, weights += w.count * kLanes) {
+  for (std::size_t j = 0; j < columns; j += kLanes, weights += step) {
     const __m256 x[kChannels] = {_mm256_loadu_ps(red + j), _mm256_loadu_ps(green + j),
                                  _mm256_loadu_ps(blue + j)};
-    fetch<sizeof(Q)>(w.ahead);
+    fetch<sizeof(Q)>(ahead);
     for (std::size_t k = 0; k < kCount; ++k) {
       const __m256 q = _mm256_cvtepi32_ps(eight(weights + k * kLanes));
       const __m256 weight = _mm256_mul_ps(q, _mm256_andnot_ps(sign, q));
-      for (std::size_t c = 0; c < kChannels; ++c) lanes[c][k] = _mm256_fmadd_ps(weight, x[c], lanes[c][k]);
+      for (std::size_t c = 0; c < kChannels; ++c)
+        lanes.of[c][k] = _mm256_fmadd_ps(weight, x[c], lanes.of[c][k]);
     }
   }
+  w.ahead = ahead;
+  return lanes;
 }
 
 template <std::size_t kCount, class Q>
 RELUME_AVX2 void weighSome(const Q* weights, Weighing& w, std::size_t first) {
   static_assert(kSome == 4 && kTogether % kSome == 0 && kLanes == 2 * kHalf);
-  __m256 low[kChannels][kSome], high[kChannels][kSome];
-  weighHalf<kCount>(weights + first * kLanes, w, 0, low);
-  weighHalf<kCount>(weights + first * kLanes, w, kHalf, high);
+  const HalfSums low = weighHalf<kCount>(weights + first * kLanes, w, 0);
+  const HalfSums high = weighHalf<kCount>(weights + first * kLanes, w, kHalf);
   for (std::size_t c = 0; c < kChannels; ++c) {
-    for (std::size_t k = 0; k < kSome; ++k) low[c][k] = _mm256_add_ps(low[c][k], high[c][k]);
-    const __m256 halves =
-        _mm256_hadd_ps(_mm256_hadd_ps(low[c][0], low[c][1]), _mm256_hadd_ps(low[c][2], low[c][3]));
+    __m256 sums[kSome];
+    for (std::size_t k = 0; k < kSome; ++k) sums[k] = _mm256_add_ps(low.of[c][k], high.of[c][k]);
+    const __m256 halves = _mm256_hadd_ps(_mm256_hadd_ps(sums[0], sums[1]), _mm256_hadd_ps(sums[2], sums[3]));
     _mm_storeu_ps(w.sums[c] + first,
                   _mm_add_ps(_mm256_castps256_ps128(halves), _mm256_extractf128_ps(halves, 1)));
   }
