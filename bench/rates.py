@@ -57,10 +57,11 @@ def transfer(build):
         parts = dict(part.split(":") for part in name.split("/") if ":" in part)
         if "ratio" in row:
             rates.append((parts["bits"], parts["threads"].replace("0", "all"), f"{row['megabytes']:.0f}", f"{row['memory_bytes_per_second'] * 1e-9:.1f}",
-                          f"{row['bytes_per_second'] * 1e-9:.1f}", f"{row['ratio']:.2f}"))
+                          f"{row['large_page_bytes_per_second'] * 1e-9:.1f}", f"{row['bytes_per_second'] * 1e-9:.1f}", f"{row['ratio']:.2f}",
+                          f"{row['large_page_ratio']:.2f}"))
         else:
             times.append((name.removeprefix("relight.transfer.").replace(".", " ").replace("_", " ").replace("/", ", ").replace(":", " "), milliseconds(row)))
-    return (table(("bits", "threads", "planes and weights, MB", "memory, GB/s", "product, GB/s", "ratio"), rates) + "\n" +
+    return (table(("bits", "threads", "planes and weights, MB", "memory, GB/s", "memory in large pages, GB/s", "product, GB/s", "ratio", "ratio to large pages"), rates) + "\n" +
             table(("what", "milliseconds"), times))
 
 

@@ -37,7 +37,7 @@ constexpr std::array<Preset, 4> kPresets = {
 
 constexpr std::uint32_t kTrainingLights = 768, kHeldOutLights = 64;
 constexpr float kNormalTerm = 4.0f;             // entries' sides that a turned normal counts as, in clusters
-constexpr std::size_t kColumnsOfCluster = 384;  // about
+constexpr std::size_t kColumnsOfCluster = 320;  // about
 // Dark exits: errors of them may be so many times those overall. Below that, in halls, the noise of what is
 // encoded is larger.
 constexpr double kRowErrors = 15, kMostRowError = 0.75;

@@ -111,6 +111,22 @@ TEST_F(TwoRoomTiles, DarkRowsHaveTheirOwnBound) {
   EXPECT_GT(dark.matrix.bytes(), bright.matrix.bytes());
 }
 
+TEST_F(TwoRoomTiles, DarkRowsCostNoMoreThanAllowed) {
+  const Transfer t = transfer();
+  const ColumnClusters c = test::clustersOf(*rooms_, 2);
+  const TileOptions bright_only{.error = 0.05, .row_error = 0};
+  TileOptions out_of_reach{.error = 0.05, .row_error = 1e-3, .row_bytes = 0.2};
+  const EncodeReport bright = encodeTiles(t, c, *lights_, bright_only).report;
+  const EncodeReport dark = encodeTiles(t, c, *lights_, out_of_reach).report;
+  EXPECT_EQ(bright.row_bytes, 0u);
+  EXPECT_FALSE(dark.met);
+  EXPECT_LE(dark.error.mean, 0.05);
+  EXPECT_LT(dark.error.row_p95, bright.error.row_p95);
+  EXPECT_GT(dark.row_bytes, 0u);
+  EXPECT_NEAR(static_cast<double>(dark.bytes) / static_cast<double>(bright.bytes), 1.2, 0.05);
+  EXPECT_EQ(dark.bytes - dark.row_bytes, bright.bytes);
+}
+
 TEST_F(TwoRoomTiles, SmallerThanOneTile) {
   // The point of tiles: at equal error, one tile of all rows takes far more.
   RowTiles one{{0, static_cast<std::uint32_t>(rooms_->rows)}, {}, std::vector<float>(rooms_->rows, 1.0f)};
@@ -291,6 +307,12 @@ TEST(EncodeTiles, ErrorsByHand) {
   EXPECT_NEAR(e.worst, 0.1, 1e-6);
   EXPECT_NEAR(e.mean, (0.1 + 0.06) / 2, 1e-6);
   EXPECT_NEAR(e.row_p95, 0.1, 1e-6);
+}
+
+TEST(EncodeTiles, RowsWithoutLightAreJudgedByWhatCountsAsDarkness) {
+  // Two rows, one at 2, one at 1e-6: a root mean square of sqrt(2), so darkness ends at 0.01 sqrt(2).
+  const EncodeError e = measureProducts(std::vector<float>{2, 0.001f}, std::vector<float>{2, 1e-6f}, 2, 1);
+  EXPECT_NEAR(e.row_p95, 0.001 / (kRowFloor * std::sqrt(2.0)), 1e-4);
 }
 
 }  // namespace
