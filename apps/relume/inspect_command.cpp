@@ -114,7 +114,7 @@ void printTable(const std::string& path, const Json& d) {
       fmt::print("  {:<12} {}\n", key, textOf(value));
     fmt::print("  {:<12} at most {} rays per texel, estimated relative error {:.2g} %\n", "samples",
                layer["samples"].get<std::uint64_t>(), layer["error_estimate"].get<double>() * 100);
-    for (const Json& plane : layer["planes"])
+    for (const Json& plane : layer.value("planes", Json::array()))
       fmt::print("  plane {:<10} {} channel{}, mean {:.4f}, from {:.4f} to {:.4f}\n",
                  plane["name"].get<std::string>(), plane["channels"].get<int>(),
                  plane["channels"].get<int>() == 1 ? "" : "s", plane["mean"].get<double>(),
