@@ -11,7 +11,10 @@ Seconds of relume: texels, bvh, seams, lightmap and "lightmap finish" of --stats
 Seconds of Cycles: its bake call. Best of --repeat. Where Cycles' longest run is still worse than a bar, its curve is continued with
 error ~ samples^-1/2, which is what its own points show.
 
-Usage: bench/blender/compare_lightmaps.py SCENE [--lights LIGHTS.json] [--size 256] [--relume BIN] [--name NAME]
+All that was baked is kept in --work, so a run goes on where the last one ended; --steps takes a part of it: the truths, which may take hours but no
+quiet machine, or the timed bakes, which need one.
+
+Usage: bench/blender/compare_lightmaps.py SCENE [--lights LIGHTS.json] [--size 256] [--relume BIN] [--name NAME] [--steps truths,cycles-truths,relume,cycles]
 Writes docs/performance/lightmap-NAME.json, .csv and .svg. Needs Blender 3.4 (2: there is none) and numpy.
 """
 import argparse
@@ -31,30 +34,53 @@ from compare_cycles import ROOT, Quiet, at_error, processor, write  # noqa: E402
 
 COUNTED = ("texels", "bvh", "seams", "lightmap", "lightmap finish")
 BARS = (0.05, 0.02)
+STEPS = ("truths", "cycles-truths", "relume", "cycles")
+TOOLS = {"relume, filtered": "medium", "relume, not filtered": "high"}
+PRESETS = ("draft", "medium", "high")
 
 
 class Relume:
     def __init__(self, options, quiet):
         self.options, self.quiet = options, quiet
 
-    def bake(self, layer, *args, repeat=1, keep=None):
-        """(texels [h, w, 3], covered, valid, seconds, stages) of the fastest of the repeats."""
+    def bake(self, path, layer, *args, repeat=1):
+        """Bakes to a .glb, and keeps the stats of the fastest of the repeats beside it; what is there is not made again."""
+        if path.exists():
+            return
         out, stats = self.options.work / "relume.glb", self.options.work / "stats.json"
         command = [self.options.relume, "bake", self.options.scene, "-o", out, "--layer", f"lightmap:part=indirect,materials=lambert{layer}", "--atlas-size",
                    self.options.size, "--no-cache", "--stats", stats, *args]
         if self.options.lights:
             command += ["--lights", self.options.lights]
-        best = (math.inf, {})
+        best = math.inf
         for _ in range(repeat):
             if repeat > 1:
                 self.quiet.wait()
             subprocess.run([str(x) for x in command], check=True, capture_output=True)
-            stages = {s["name"]: s["seconds"] for s in json.loads(stats.read_text())["stages"]}
-            best = min(best, (sum(stages[name] for name in COUNTED), stages), key=lambda x: x[0])
-        if keep:
-            shutil.copy(out, keep)
-        value, covered, valid, _ = baked_glb.baked(baked_glb.Glb(out), "lightmap")
-        return value, covered, valid, *best
+            seconds, _ = self.spent(stats)
+            if seconds < best:
+                best = seconds
+                shutil.copy(stats, path.with_suffix(".json"))
+        shutil.move(out, path)
+
+    @staticmethod
+    def spent(stats):
+        """(seconds, {stage: seconds})"""
+        stages = {s["name"]: s["seconds"] for s in json.loads(stats.read_text())["stages"]}
+        return sum(stages[name] for name in COUNTED), stages
+
+    def settings(self):
+        """(tool, name of the setting, options of the bake, file) of all timed bakes."""
+        for tool, quality in TOOLS.items():
+            for n in self.options.samples.split(","):
+                yield tool, n, ["--quality", quality, "--samples", n], self.options.work / f"{quality}-{n}.glb"
+        for preset in PRESETS:
+            yield "relume, presets", preset, ["--quality", preset], self.options.work / f"{preset}.glb"
+
+
+def lightmap(path):
+    """(texels [h, w, 3], covered, valid)"""
+    return baked_glb.baked(baked_glb.Glb(path), "lightmap")[:3]
 
 
 class Cycles:
@@ -71,16 +97,23 @@ class Cycles:
         self.triangles = len(surfaces["material"])
 
     def bake(self, jobs):
-        """{name: (texels, seconds, share of the machine that the bake had)}; one start of Blender for all jobs."""
+        """Keeps NAME.npy and what it took (NAME-spent.json) of each job that is not there; one start of Blender for all."""
+        jobs = [job for job in jobs if not (self.options.work / f"{job['name']}-spent.json").exists()]
+        if not jobs:
+            return
         (self.options.work / "jobs.json").write_text(json.dumps(jobs))
         script = pathlib.Path(__file__).with_name("cycles_lightmap.py")
         run = subprocess.run([self.options.blender, "-b", "--factory-startup", "-P", script, "--", self.options.work], capture_output=True, text=True)
         if run.returncode:
             raise SystemExit("Blender failed:\n" + run.stdout[-2000:] + run.stderr[-2000:])
         results = json.loads((self.options.work / "results.json").read_text())
-        self.version = results["version"]
-        return {job["name"]: (self.texels(job["name"]), results["seconds"][job["name"]],
-                              results["cpu_seconds"][job["name"]] / (results["seconds"][job["name"]] * os.cpu_count())) for job in jobs}
+        for name in (job["name"] for job in jobs):
+            seconds = results["seconds"][name]
+            spent = {"seconds": seconds, "share_of_machine": results["cpu_seconds"][name] / (seconds * os.cpu_count()), "version": results["version"]}
+            (self.options.work / f"{name}-spent.json").write_text(json.dumps(spent))
+
+    def spent(self, name):
+        return json.loads((self.options.work / f"{name}-spent.json").read_text())
 
     def texels(self, name):
         return np.load(self.options.work / f"{name}.npy").astype(np.float64)
@@ -124,42 +157,59 @@ def arguments():
     parser.add_argument("--bounces", type=int, default=64, help="Cycles' limit; relume has none")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("compare-lightmaps"), help="folder that keeps the truths for later runs")
     parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--steps", default=",".join(STEPS), help="without all of them nothing is written but --work")
     parser.add_argument("--patience", type=float, default=60, help="seconds to wait in all for moments when nothing else runs")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "performance")
     options = parser.parse_args()
     if not options.blender or not shutil.which(options.blender):
         print("Blender is not installed, so there is nothing to compare with; on Debian: apt-get install blender", file=sys.stderr)
         raise SystemExit(2)
+    options.steps = options.steps.split(",")
+    if not set(options.steps) <= set(STEPS):
+        parser.error(f"--steps is a list of {', '.join(STEPS)}")
     options.relume = options.relume.resolve()
+    options.cycles_samples = [int(n) for n in options.cycles_samples.split(",")]
     options.name = options.name or options.scene.stem
     options.title = options.title or options.scene.stem
     options.work.mkdir(parents=True, exist_ok=True)
     return options
 
 
-def main():
-    options = arguments()
+def bake(options):
+    """All steps that are asked for."""
     quiet = Quiet(options.patience)
     relume, work = Relume(options, quiet), options.work
-    truths = [work / f"truth{n}.glb" for n in (1, 2)]
-    for number, path in enumerate(truths, 1):
-        if not path.exists():
-            relume.bake(",solver=path", "--quality", "final", "--samples", options.reference_samples, "--seed", 1000 + number, keep=path)
-    glb = baked_glb.Glb(truths[0])
-    references = [baked_glb.baked(baked_glb.Glb(path), "lightmap")[0] for path in truths]
-    _, covered, valid, _ = baked_glb.baked(glb, "lightmap")
-    cycles = Cycles(options, glb)
-    size = [options.size, options.size]
-    job = lambda name, samples, seed, repeat=1: {"name": name, "size": size, "samples": samples, "seed": seed, "bounces": options.bounces, "repeat": repeat}
-    missing = [job(f"cycles{n}", options.cycles_reference_samples, 100 + n) for n in (1, 2) if not (work / f"cycles{n}.npy").exists()]
-    cycles.bake(missing)
+    relume.bake(work / "charts.glb", "", "--quality", "draft")
+    if "truths" in options.steps:
+        for n in (1, 2):
+            relume.bake(work / f"truth{n}.glb", ",solver=path", "--quality", "final", "--samples", options.reference_samples, "--seed", 1000 + n)
+    if "relume" in options.steps:
+        for _, _, args, path in relume.settings():
+            relume.bake(path, "", *args, "--seed", 7, repeat=options.repeat)
+    cycles = Cycles(options, baked_glb.Glb(work / "charts.glb"))
+    job = lambda name, samples, seed, repeat=1: {"name": name, "size": [options.size] * 2, "samples": samples, "seed": seed, "bounces": options.bounces, "repeat": repeat}
+    if "cycles-truths" in options.steps:
+        cycles.bake([job(f"cycles{n}", options.cycles_reference_samples, 100 + n) for n in (1, 2)])
+    if "cycles" in options.steps:
+        quiet.wait()
+        cycles.bake([job(f"c{n}", n, 1, options.repeat if n < 256 else 1) for n in options.cycles_samples])
+    return relume, cycles
+
+
+def main():
+    options = arguments()
+    relume, cycles = bake(options)
+    if len(options.steps) < len(STEPS):
+        return
+    references = [lightmap(options.work / f"truth{n}.glb")[0] for n in (1, 2)]
+    _, covered, valid = lightmap(options.work / "truth1.glb")
     peers = [cycles.texels(f"cycles{n}") for n in (1, 2)]
     mask = valid & np.isfinite(peers[0]).all(-1) & np.isfinite(peers[1]).all(-1)
     apart = measured(references[0], peers, mask)[1]
     a, b = references[0] - peers[0], references[1] - peers[1]
     noise_free = math.sqrt(max(float((a * b)[mask].mean()), 0)) / references[0][mask].mean()
     result = {"scene": options.title, "size": options.size, "triangles": cycles.triangles, "covered_texels": int(covered.sum()),
-              "compared_texels": int(mask.sum()), "machine": f"{processor()}, {os.cpu_count()} cores", "blender": cycles.version,
+              "compared_texels": int(mask.sum()), "machine": f"{processor()}, {os.cpu_count()} cores", "blender": cycles.spent("cycles1")["version"],
               "truths_apart": {"relative_rmse": noise_free, "relative_bias": apart}}
     rows, curves, stages = [], {}, {}
 
@@ -169,19 +219,13 @@ def main():
         curves.setdefault(tool, []).append(rows[-1])
         print(f"{tool:24s} {setting:>8s} {seconds:9.4f} s  error {100 * rmse:7.3f} %  bias {100 * bias:+.3f} %", flush=True)
 
-    for tool, quality in (("relume, filtered", "medium"), ("relume, not filtered", "high")):
-        for n in options.samples.split(","):
-            texels, _, _, seconds, spent = relume.bake("", "--quality", quality, "--samples", n, "--seed", 7, repeat=options.repeat)
-            row(tool, n, texels, references, seconds, seconds + spent["atlas"])
-    for preset in ("draft", "medium", "high"):
-        texels, _, _, seconds, stages[preset] = relume.bake("", "--quality", preset, "--seed", 7, repeat=options.repeat)
-        row("relume, presets", preset, texels, references, seconds, seconds + stages[preset]["atlas"])
-    counts = [int(n) for n in options.cycles_samples.split(",")]
-    quiet.wait()
-    timed = cycles.bake([job(f"c{n}", n, 1, options.repeat if n < 256 else 1) for n in counts])
-    result["cycles_share_of_machine"] = {str(n): timed[f"c{n}"][2] for n in counts}
-    for n in counts:
-        row("Cycles", str(n), timed[f"c{n}"][0], peers, timed[f"c{n}"][1])
+    for tool, setting, _, path in relume.settings():
+        seconds, spent = relume.spent(path.with_suffix(".json"))
+        row(tool, setting, lightmap(path)[0], references, seconds, seconds + spent["atlas"])
+        stages[setting] = spent
+    result["cycles_share_of_machine"] = {str(n): cycles.spent(f"c{n}")["share_of_machine"] for n in options.cycles_samples}
+    for n in options.cycles_samples:
+        row("Cycles", str(n), cycles.texels(f"c{n}"), peers, cycles.spent(f"c{n}")["seconds"])
 
     peer = [(r["seconds"], r["relative_rmse"]) for r in curves["Cycles"]]
     result["equal_error"] = []

@@ -25,8 +25,17 @@ EndRadiance::EndRadiance(const TexelLookup& lookup, const Exposure& exposure, co
   });
 }
 
-std::uint32_t EndRadiance::of(const trace::RayPacket& rays, const trace::HitPacket& hits,
-                              LightLanes& radiance) const {
+void EndRadiance::watchNear(std::span<const float> reach) {
+  reach_.assign(lookup_.texels(), -1.0f);
+  for (std::uint32_t i = 0; i < reach_.size(); ++i) {
+    const std::uint32_t point = lookup_.pointOf(i);
+    // What glossy lobes send from there is followed anyhow, and by chance.
+    if (point != scene::kNone && cache_.walkChance(point) == 0) reach_[i] = reach[point];
+  }
+}
+
+EndRadiance::Open EndRadiance::of(const trace::RayPacket& rays, const trace::HitPacket& hits,
+                                  LightLanes& radiance) const {
   constexpr std::uint32_t kLanes = trace::RayPacket::kSize;
   LaneTexels texel;
   lookup_.texels(hits, texel);
@@ -38,14 +47,18 @@ std::uint32_t EndRadiance::of(const trace::RayPacket& rays, const trace::HitPack
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(asked));
     radiance[lane] = withLuminance(cache_.radiance(endOf(rays, hits, lane, lookup_, &exposure_)));
   }
-  std::uint32_t walks = 0;
-  if (walk_chance_.empty()) return walks;
+  Open open;
+  if (!reach_.empty())
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+      open.near |= static_cast<std::uint32_t>(hits.t[lane] < reach_[texel[lane]]) << lane;
+  open.near &= hits.hit;
+  if (walk_chance_.empty()) return open;
   // The golden ratio spreads the chances of a texel's samples, whose seeds are consecutive.
   for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-    walks |=
+    open.walks |=
         static_cast<std::uint32_t>((rays.alpha_seed[lane] * 0x9e3779b1u) >> 24 < walk_chance_[texel[lane]])
         << lane;
-  return walks;
+  return open;
 }
 
 }  // namespace relume::transport

@@ -2,6 +2,7 @@
 // What the rays of a packet bring from where they end.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "lightmap/radiance_cache.h"
@@ -20,9 +21,15 @@ class EndRadiance {
   /// Keeps references.
   EndRadiance(const TexelLookup& lookup, const Exposure& exposure, const RadianceCache& cache);
 
-  /// Radiance by lane; black where a ray ends nowhere. Returns lanes whose ends send glossy light too, which
-  /// is to be followed: bit i for lane i, by chance.
-  std::uint32_t of(const trace::RayPacket& rays, const trace::HitPacket& hits, LightLanes& radiance) const;
+  /// What the cache does not tell, bit i for lane i.
+  struct Open {
+    std::uint32_t walks = 0;  ///< by chance: the end sends glossy light too, which is to be followed
+    std::uint32_t near = 0;   ///< the ray ends nearer than the length of its last texel allows (near_walk.h)
+  };
+  /// Radiance by lane; black where a ray ends nowhere.
+  Open of(const trace::RayPacket& rays, const trace::HitPacket& hits, LightLanes& radiance) const;
+  /// From now on rays are near that end before this way, by point, in metres.
+  void watchNear(std::span<const float> reach);
   /// One over that chance.
   float perWalk(const scene::Hit& hit) const {
     return 256.0f / static_cast<float>(cache_.walkChance(lookup_.point(hit)));
@@ -35,6 +42,7 @@ class EndRadiance {
   /// By texel, that for none too. A luminance below 0: it depends on more than the texel.
   std::vector<Vec4> texels_;
   std::vector<std::uint8_t> walk_chance_;  ///< by texel, that for none too; or empty
+  std::vector<float> reach_;               ///< by texel, that for none too; or empty
 };
 
 }  // namespace relume::transport

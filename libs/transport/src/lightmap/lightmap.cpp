@@ -17,6 +17,7 @@
 #include "lightmap/gatherer.h"
 #include "lightmap/glossy_walk.h"
 #include "lightmap/light_rays.h"
+#include "lightmap/near_walk.h"
 #include "lightmap/path_group.h"
 #include "lightmap/radiance_cache.h"
 #include "radiosity/radiosity.h"
@@ -94,7 +95,8 @@ struct Shared {
   const Exposure& exposure;
   const RadianceCache& cache;
   const EndRadiance& ends;
-  float mean = 0;  // of the irradiance that is solved for: luminance
+  std::span<const float> reach;  // NearWalk::reaches
+  float mean = 0;                // of the irradiance that is solved for: luminance
 
   bool direct() const { return options.part != Part::kIndirect && !emitters.empty(); }
   bool indirect() const { return options.part != Part::kDirect && options.max_bounces != 0; }
@@ -109,9 +111,11 @@ class GroupSolver {
               Alignment::kTurned, &shared.exposure),
         gatherer_(shared.tracer, shared.lookup, shared.emitters, &shared.exposure),
         light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect),
-        walk_(shared.tracer, shared.lookup, shared.exposure, shared.emitters, shared.cache) {}
+        walk_(shared.tracer, shared.lookup, shared.exposure, shared.emitters, shared.cache),
+        near_(shared.tracer, shared.reach, shared.lookup, shared.exposure, shared.emitters, shared.cache,
+              options_.materials) {}
 
-  std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays() + walk_.rays(); }
+  std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays() + walk_.rays() + near_.rays(); }
 
   void solve(std::span<const std::uint32_t> group, std::span<const std::uint32_t> slots,
              LightmapResult& result) {
@@ -171,10 +175,13 @@ class GroupSolver {
         rays_, first, count,
         [&](std::uint32_t s, const trace::RayPacket& packet, const trace::HitPacket& hits) {
           LightLanes light;
-          if (indirect)
-            addWalks(first + s, packet, hits, shared_.ends.of(packet, hits, light), light);
-          else
+          if (indirect) {
+            const EndRadiance::Open open = shared_.ends.of(packet, hits, light);
+            addWalks(first + s, packet, hits, open.walks, light);
+            askNear(first + s, packet, hits, open.near, light);
+          } else {
             light.fill(Vec4(0.0f));
+          }
           if (direct && !gatherer_.nothingSeen()) addEmitted(first + s, packet, hits, light);
           chunk_.add(rays_, s, light);
           backs_.add(rays_, packet, hits);
@@ -192,6 +199,19 @@ class GroupSolver {
       Vec3 sum = walk_.follow(hits.where(lane), -d, sampler, walk_ends_);
       for (const GlossyWalk::End& end : walk_ends_) sum += end.share * shared_.cache.radiance(end.surface);
       light[lane] += withLuminance(shared_.ends.perWalk(hits.where(lane)) * sum);
+    }
+  }
+
+  /// What is reflected where the rays of these lanes end, instead of what the cache knows of it.
+  void askNear(std::uint32_t first, const trace::RayPacket& packet, const trace::HitPacket& hits,
+               std::uint32_t lanes, LightLanes& light) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      if (!(packet.t_max[lane] >= 0.0f)) continue;
+      PathSampler sampler(options_.seed, rays_.alphaStream(rays_.texelOf(lane)), 3,
+                          first + rays_.sampleOf(lane));
+      const Direction d(packet.direction_x[lane], packet.direction_y[lane], packet.direction_z[lane]);
+      light[lane] = withLuminance(near_.follow(hits.where(lane), -d, sampler));
     }
   }
 
@@ -223,6 +243,7 @@ class GroupSolver {
   Gatherer gatherer_;
   LightRays light_rays_;
   GlossyWalk walk_;
+  NearWalk near_;
   std::vector<GlossyWalk::End> walk_ends_;
   std::vector<std::uint32_t> all_;  // places in the group
   Chunk chunk_;
@@ -282,8 +303,13 @@ struct LightmapSolver::Impl {
     }
     mean = area > 0 ? static_cast<float>(sum / area) : 0.0f;
     ends = std::make_unique<EndRadiance>(lookup, *exposure, *cache);
+    // Bounces that are counted would need the light of each apart; patches are not as fine as texels anyway.
+    if (options.max_bounces < 0 && options.method == LightmapMethod::kGather) {
+      reach = NearWalk::reaches(texels, *cache);
+      ends->watchNear(reach);
+    }
     shared.emplace(Shared{tracer, texels, options, emitters, lookup, directions, lights, *exposure, *cache,
-                          *ends, mean});
+                          *ends, reach, mean});
   }
 
   const trace::Tracer& tracer;
@@ -298,6 +324,7 @@ struct LightmapSolver::Impl {
   std::unique_ptr<Exposure> exposure;
   std::unique_ptr<RadianceCache> cache;
   std::unique_ptr<EndRadiance> ends;
+  std::vector<float> reach;
   float mean = 0;
   std::optional<Shared> shared;  // of what stands above; made with the cache
   SolverPool<GroupSolver> gatherers;

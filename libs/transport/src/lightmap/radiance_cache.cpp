@@ -16,8 +16,8 @@
 namespace relume::transport {
 namespace {
 
-// Light is handed on until what is still to come is this share of all light.
-constexpr double kConverged = 1e-4;
+// Light is handed on until what is still to come is this share of what there is, and that is added then.
+constexpr double kConverged = 1e-3;
 constexpr int kMostBounces = 4096;
 
 // What glossy lobes of less than this share of the light send on leaves as from diffuse ones. Coats of
@@ -30,6 +30,25 @@ double sumOf(std::span<const Vec4> values) {
   for (const Vec4& v : values) sum += static_cast<double>(v.x + v.y + v.z);
   return sum;
 }
+
+/// A sum that grows bounce by bounce, each time by about the same part of the growth before.
+class Growth {
+ public:
+  explicit Growth(double first = 0) : total_(first), step_(first) {}
+
+  void to(double sum) {
+    const double step = sum - total_;
+    ratio_ = step_ > 0 ? std::clamp(step / step_, 0.0, kMostRatio) : kMostRatio;
+    total_ = sum, step_ = step;
+  }
+  /// What is still to come, in last steps.
+  double stepsToCome() const { return ratio_ / (1 - ratio_); }
+  bool done() const { return total_ > 0 && step_ * stepsToCome() < kConverged * total_; }
+
+ private:
+  static constexpr double kMostRatio = 0.999;
+  double total_, step_, ratio_ = kMostRatio;
+};
 
 }  // namespace
 
@@ -341,6 +360,21 @@ struct RadianceCache::Builder {
     });
   }
 
+  /// Irradiance that is handed on to the fronts of texels that lie outside of bodies.
+  double seenLight() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < cache.indirect_.size(); ++i) {
+      const Vec3& e = cache.indirect_[i];
+      if (!(cache.back_share_[i] > kBuriedShare)) sum += static_cast<double>(e.x + e.y + e.z);
+    }
+    return sum;
+  }
+
+  /// Adds the last step so many times.
+  void extrapolate(std::span<const Vec4> before, float times) {
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] += times * (now[i] - before[i]);
+  }
+
   void handOn() {
     now.assign(front.size() + back.size() + 1, Vec4(0.0f));
     std::vector<Vec4> next(now.size(), Vec4(0.0f));
@@ -350,20 +384,23 @@ struct RadianceCache::Builder {
       const Reflectance& r = found.reflectance[entry];
       now[place] = Vec4(kInvPi * (r.diffuse * r.direct * found.direct[entry] + found.glossy[entry]), 0);
     });
-    const int most = options.bounces < 0 ? kMostBounces : options.bounces;
-    double total = sumOf(now), change = total;
+    const bool endless = options.bounces < 0;
+    const int most = endless ? kMostBounces : options.bounces;
+    // White walls inside of bodies hand on for hundreds of bounces what nobody sees: where texels that are
+    // seen get no more light, the rest may be as it is.
+    const double first = sumOf(now);
+    Growth all(first), seen;
     // Light of emitters may come by glossy surfaces alone.
-    for (int k = 0; k < most && (total > 0 || (k == 0 && cache.anyWalks())); ++k) {
+    for (int k = 0; k < most && (first > 0 || k > 0 || cache.anyWalks()); ++k) {
       forEachEntry([&](const Found& found, std::size_t entry, std::size_t place) {
         next[place] = reflect(found, entry, &found == &front ? &cache.indirect_[entry] : nullptr);
       });
       now.swap(next);
-      const double sum = sumOf(now), step = sum - total;
-      // Each bounce adds less than the last by about the same ratio.
-      const double ratio = change > 0 ? std::min(step / change, 0.999) : 0;
-      total = sum, change = step;
-      if (step * ratio / (1 - ratio) < kConverged * total) break;
+      all.to(sumOf(now)), seen.to(seenLight());
       progress.throwIfCancelled();
+      if (!all.done() && !seen.done()) continue;
+      if (endless) extrapolate(next, static_cast<float>(std::min(all.stepsToCome(), seen.stepsToCome())));
+      break;
     }
     cache.direct_ = std::move(front.direct);
   }
