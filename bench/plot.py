@@ -57,8 +57,10 @@ def line_plot(title, x_label, y_label, series, log_x=False, log_y=False):
         out.append(f'<text x="{LEFT - 8}" y="{sy(y) + 4:.1f}" text-anchor="end" fill="#444">{_label(y)}</text>')
     out.append(f'<rect x="{LEFT}" y="{TOP}" width="{WIDTH - LEFT - RIGHT}" height="{HEIGHT - TOP - BOTTOM}" fill="none" stroke="#9ca3af"/>')
     out.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 16}" text-anchor="middle" fill="#111">{html.escape(x_label)}</text>')
-    # The names stand in the upper corner that fewer points are in.
-    upper = [sx(x) for _, points in series for x, y in points if sy(y) < TOP + 18 * len(series) + 24]
+    # The names stand in the upper corner that less of the lines is in.
+    on_lines = [(sx(a[0]) + t / 16 * (sx(b[0]) - sx(a[0])), sy(a[1]) + t / 16 * (sy(b[1]) - sy(a[1])))
+                for _, points in series for a, b in zip(points, points[1:] or points) for t in range(17)]
+    upper = [x for x, y in on_lines if y < TOP + 18 * len(series) + 24]
     legend = LEFT if sum(x < WIDTH / 2 for x in upper) <= sum(x >= WIDTH / 2 for x in upper) else WIDTH - RIGHT - 190
     middle = (TOP + HEIGHT - BOTTOM) / 2
     out.append(f'<text x="18" y="{middle}" text-anchor="middle" fill="#111" transform="rotate(-90 18 {middle})">{html.escape(y_label)}</text>')
