@@ -36,7 +36,6 @@ COUNTED = ("texels", "bvh", "seams", "lightmap", "lightmap finish")
 BARS = (0.05, 0.02)
 STEPS = ("truths", "cycles-truths", "relume", "cycles")
 TOOLS = {"relume, filtered": "medium", "relume, not filtered": "high"}
-PRESETS = ("draft", "medium", "high")
 
 
 class Relume:
@@ -74,7 +73,7 @@ class Relume:
         for tool, quality in TOOLS.items():
             for n in self.options.samples.split(","):
                 yield tool, n, ["--quality", quality, "--samples", n], self.options.work / f"{quality}-{n}.glb"
-        for preset in PRESETS:
+        for preset in self.options.presets.split(","):
             yield "relume, presets", preset, ["--quality", preset], self.options.work / f"{preset}.glb"
 
 
@@ -151,6 +150,7 @@ def arguments():
     parser.add_argument("--name", help="of the result's files; without it, the scene's")
     parser.add_argument("--title", help="of the plot; without it, the scene's name")
     parser.add_argument("--samples", default="8,16,32,64,128,256", help="relume's, rays per texel")
+    parser.add_argument("--presets", default="draft,medium,high", help="relume's, measured too")
     parser.add_argument("--cycles-samples", default="16,64,256")
     parser.add_argument("--reference-samples", type=int, default=1024, help="paths per texel, each of two truths")
     parser.add_argument("--cycles-reference-samples", type=int, default=1024, help="each of two")
