@@ -160,6 +160,19 @@ class LightPath(test_cli.CliTest):
         self.bake("--layer", "lightpath:count=1024,size=64,error=0.03,entries=shot", "--quality", "draft", "--atlas-size", 128, scene=self.room)
         self.assertAlmostEqual(sum(map(sum, self.relit())), patches, delta=0.05 * patches)
 
+    def test_exits_at_vertices_and_probes(self):
+        self.light(self.lamp())
+        self.small()
+        view = ["--size", "48x32", "--eye", "0,1.5,5", "--target", "0,1.3,0", "--lights", self.lights, "--view", "indirect"]
+        pictures = {}
+        for exits in ("texels", "vertices", "probes"):
+            self.bake("--layer", SMALL + ",spacing=0.4,exits=" + exits, "--quality", "draft", "--atlas-size", 128, scene=self.room)
+            relume("render", self.baked, "-o", self.folder / "indirect.exr", *view)
+            pictures[exits] = sum(map(sum, (glb.read_exr(self.folder / "indirect.exr")[2][c] for c in "RGB")))
+        # Four vertices of a wall know little of what is between them; light through walls is not seen by probes.
+        self.assertAlmostEqual(pictures["probes"], pictures["texels"], delta=0.1 * pictures["texels"])
+        self.assertAlmostEqual(pictures["vertices"], pictures["texels"], delta=0.4 * pictures["texels"])
+
     def test_inspect_and_statistics_tell_its_size(self):
         stats = self.folder / "s.json"
         self.small("--stats", stats)
@@ -174,7 +187,7 @@ class LightPath(test_cli.CliTest):
         self.assertIn("lightpath", self.small("--dry-run").stdout)
 
     def test_wrong_usage(self):
-        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=thrown", "lightpath:entries=shot,samples=4", "lightpath:places=0", "lightpath:aim=left", "lightpath:size=0", "lightpath:count=inf", "lightpath:clusters=0", "lightpath:bits=12"):
+        for layer in ("lightpath:error=2", "lightpath:error=0", "lightpath:count=1.5", "lightpath:codec=zip", "lightpath:entries=thrown", "lightpath:entries=shot,samples=4", "lightpath:places=0", "lightpath:exits=pixels", "lightpath:exits=probes,spacing=0", "lightpath:exits=probes,short=obscurance", "lightpath:exits=vertices,transfer=walks", "lightpath:aim=left", "lightpath:size=0", "lightpath:count=inf", "lightpath:clusters=0", "lightpath:bits=12"):
             self.assertIn("lightpath", self.bake("--layer", layer, scene=self.room, expect=2).stderr)
 
 

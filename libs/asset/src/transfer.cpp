@@ -47,7 +47,39 @@ void checkEntries(const Entries& entries, std::size_t columns, const std::string
     corrupt(layer, "the weight of an entry is negative or not finite");
 }
 
-void checkExits(const Exits& exits, std::size_t rows, const AtlasTable& atlas, const std::string& layer) {
+void checkVertices(const VertexExits& v, std::size_t rows, std::size_t texels, const std::string& layer) {
+  if (v.position.size() != rows || v.normal.size() != rows)
+    corrupt(layer, fmt::format("it has {} vertices with {} normals for {} exits", v.position.size(),
+                               v.normal.size(), rows));
+  for (std::size_t i = 0; i < rows; ++i)
+    if (!isFinite(v.position[i]) || !(std::abs(glm::length(v.normal[i]) - 1) < kUnitTolerance))
+      corrupt(layer, fmt::format("vertex {} is not a place with a unit normal", i));
+  if (v.texel_exit.size() != 3 * texels || v.texel_weight.size() != 3 * texels)
+    corrupt(layer, fmt::format("it does not say where {} texels lie between its vertices", texels));
+  for (std::size_t i = 0; i < v.texel_exit.size(); ++i)
+    if (v.texel_exit[i] >= rows)
+      corrupt(layer, fmt::format("texel {} has vertex {} of {}", i / 3, v.texel_exit[i], rows));
+  for (std::size_t i = 0; i < v.texel_weight.size(); i += 3)
+    if (v.texel_weight[i] + v.texel_weight[i + 1] + v.texel_weight[i + 2] != 255)
+      corrupt(layer, fmt::format("the weights of texel {} do not sum to 1", i / 3));
+}
+
+void checkProbes(const ProbeExits& p, std::size_t rows, const std::string& layer) {
+  if (!isFinite(p.origin) || !(p.spacing > 0 && p.spacing < kInfinity))
+    corrupt(layer, "its grid of probes has no place");
+  std::uint64_t places = 1;
+  for (const std::uint32_t n : p.count) places = n == 0 || places > p.probe.size() ? 0 : places * n;
+  if (places == 0 || places != p.probe.size())
+    corrupt(layer, fmt::format("its grid of {} x {} x {} has {} places", p.count[0], p.count[1], p.count[2],
+                               p.probe.size()));
+  for (const std::uint32_t probe : p.probe)
+    if (probe != ProbeExits::kNoProbe && probe >= rows / ProbeExits::kRows)
+      corrupt(layer, fmt::format("a place has probe {} of {}", probe, rows / ProbeExits::kRows));
+  if (rows == 0 || rows % ProbeExits::kRows != 0)
+    corrupt(layer, fmt::format("its probes have {} rows, which are not {} each", rows, ProbeExits::kRows));
+}
+
+void checkBlocks(const Exits& exits, std::size_t rows, const AtlasTable& atlas, const std::string& layer) {
   if (exits.side == 0) corrupt(layer, "its exits are blocks of 0 texels");
   if (exits.exit_of_texel.size() != atlas.texel.size())
     corrupt(layer, fmt::format("it has exits of {} texels where the atlas has {}", exits.exit_of_texel.size(),
@@ -85,6 +117,41 @@ std::vector<std::uint8_t> encodeNear(const NearShares& shares) {
     for (int c = 0; c < 3; ++c)
       q.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(s[c], kMostNear))));
   return q;
+}
+
+void checkExits(const Exits& exits, std::size_t rows, const AtlasTable& atlas, const std::string& layer) {
+  switch (exits.kind) {
+    case Exits::Kind::kVertices:
+      return checkVertices(exits.vertices, rows, atlas.texel.size(), layer);
+    case Exits::Kind::kProbes:
+      return checkProbes(exits.probes, rows, layer);
+    case Exits::Kind::kTexels:
+      return checkBlocks(exits, rows, atlas, layer);
+  }
+}
+
+std::vector<float> flat(const std::vector<Point>& points) {
+  std::vector<float> values;
+  for (const Point& p : points)
+    for (int c = 0; c < 3; ++c) values.push_back(p[c]);
+  return values;
+}
+
+void addExits(const Exits& exits, std::vector<Table>& tables) {
+  if (exits.kind == Exits::Kind::kTexels) tables.push_back({"exitOfTexel", 1, exits.exit_of_texel});
+  if (exits.kind == Exits::Kind::kVertices) {
+    const VertexExits& v = exits.vertices;
+    tables.push_back({"vertexPosition", 3, flat(v.position)});
+    tables.push_back({"vertexNormal", 2, encodeNormals(v.normal, "vertex")});
+    tables.push_back({"texelVertex", 3, v.texel_exit});
+    tables.push_back({"texelVertexWeight", 3, v.texel_weight});
+  }
+  if (exits.kind == Exits::Kind::kProbes) {
+    const ProbeExits& p = exits.probes;
+    tables.push_back({"probeGrid", 4, std::vector<float>{p.origin.x, p.origin.y, p.origin.z, p.spacing}});
+    tables.push_back({"probeCount", 3, std::vector<std::uint32_t>(p.count.begin(), p.count.end())});
+    tables.push_back({"probe", 1, p.probe});
+  }
 }
 
 // Positions finer than what an entry can tell apart are noise that does not compress.
@@ -125,13 +192,38 @@ std::vector<Point> readPositions(const TableReader& tables, const std::string& l
   return positions;
 }
 
-std::vector<Normal> readNormals(const TableReader& tables, const std::string& layer) {
-  const auto& q = tables.get<std::uint16_t>("entryNormal", 2);
+std::vector<Normal> readNormals(const TableReader& tables, const char* table, const std::string& layer) {
+  const auto& q = tables.get<std::uint16_t>(table, 2);
   if (std::any_of(q.begin(), q.end(), [](std::uint16_t v) { return v > kOctahedralLast; }))
-    corrupt(layer, "an entry point has a normal off the octahedron");
+    corrupt(layer, fmt::format("its table {} has a normal off the octahedron", table));
   std::vector<Normal> normals(q.size() / 2);
   for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = decodeNormal(q.data() + 2 * i);
   return normals;
+}
+
+Exits readExits(const TableReader& tables, const std::string& layer, std::uint32_t side) {
+  Exits exits{.side = side, .exit_of_texel = {}, .vertices = {}, .probes = {}};
+  if (tables.has("vertexPosition")) {
+    exits.kind = Exits::Kind::kVertices;
+    VertexExits& v = exits.vertices;
+    const auto& p = tables.get<float>("vertexPosition", 3);
+    for (std::size_t i = 0; i < p.size(); i += 3) v.position.emplace_back(p[i], p[i + 1], p[i + 2]);
+    v.normal = readNormals(tables, "vertexNormal", layer);
+    v.texel_exit = tables.get<std::uint32_t>("texelVertex", 3);
+    v.texel_weight = tables.get<std::uint8_t>("texelVertexWeight", 3);
+  } else if (tables.has("probeGrid")) {
+    exits.kind = Exits::Kind::kProbes;
+    ProbeExits& p = exits.probes;
+    const auto& grid = tables.get<float>("probeGrid", 4);
+    const auto& count = tables.get<std::uint32_t>("probeCount", 3);
+    if (grid.size() != 4 || count.size() != 3) corrupt(layer, "its grid of probes has more than one row");
+    p.origin = {grid[0], grid[1], grid[2]}, p.spacing = grid[3];
+    std::copy(count.begin(), count.end(), p.count.begin());
+    p.probe = tables.get<std::uint32_t>("probe");
+  } else {
+    exits.exit_of_texel = tables.get<std::uint32_t>("exitOfTexel");
+  }
+  return exits;
 }
 
 }  // namespace
@@ -161,7 +253,6 @@ std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& at
   shape[kSamples] = entries.samples, shape[kSide] = transfer.exits.side;
   std::vector<Table> tables{
       {"shape", kShapeFields, std::move(shape)},
-      {"exitOfTexel", 1, transfer.exits.exit_of_texel},
       {"entryGrid", 4, std::vector<float>{grid.origin.x, grid.origin.y, grid.origin.z, grid.step}},
       {"entryPosition", 3, encodePositions(entries.position, grid)},
       {"entryNormal", 2, encodeNormals(entries.normal, kPoint)},
@@ -172,6 +263,7 @@ std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& at
       {"clusterColumn", 1, m.cluster_column},
       {"componentFirst", 1, m.component_first},
       {"scale", 1, m.scale}};
+  addExits(transfer.exits, tables);
   if (!entries.weight.empty()) tables.push_back({"entryWeight", 1, entries.weight});
   if (!transfer.near_share.empty()) tables.push_back({"nearShare", 3, encodeNear(transfer.near_share)});
   if (m.bits == 8) {
@@ -209,11 +301,10 @@ Transfer readTransfer(const Layer& layer, const AtlasTable& atlas) {
   }
   t.entries.samples = shape[kSamples];
   t.entries.position = readPositions(tables, layer.name);
-  t.entries.normal = readNormals(tables, layer.name);
+  t.entries.normal = readNormals(tables, "entryNormal", layer.name);
   t.entries.area = tables.get<float>("entryArea");
   if (tables.has("entryWeight")) t.entries.weight = tables.get<float>("entryWeight");
-  t.exits.side = shape[kSide];
-  t.exits.exit_of_texel = tables.get<std::uint32_t>("exitOfTexel");
+  t.exits = readExits(tables, layer.name, shape[kSide]);
   if (tables.has("nearShare")) {
     const auto& q = tables.get<std::uint8_t>("nearShare", 3);
     for (std::size_t i = 0; i < q.size(); i += 3)

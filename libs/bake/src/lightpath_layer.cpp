@@ -90,6 +90,15 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
                                                        : transport::TransferBy::kGathering;
   o.walks = count(parameters, "walks", o.walks);
   o.walk_seed = context.seed;
+  const std::string& receivers = word(parameters, "exits");
+  o.receivers = receivers == "vertices" ? transport::Receivers::kVertices
+                : receivers == "probes" ? transport::Receivers::kProbes
+                                        : transport::Receivers::kTexels;
+  o.probe_spacing = static_cast<float>(given(parameters, "spacing", 1));
+  if (o.receivers != transport::Receivers::kTexels &&
+      (word(parameters, "short") == "obscurance" || o.transfer == transport::TransferBy::kWalks))
+    throw Error(ErrorCode::kUsage, "--layer lightpath",
+                "short=obscurance and transfer=walks are for exits at texels", "leave exits= away");
   if (word(parameters, "short") == "obscurance") o.near = static_cast<float>(given(parameters, "near", 0));
   o.test_points = count(parameters, "places", o.test_points);
   if (const std::string& aim = word(parameters, "aim"); aim != "all")
@@ -131,6 +140,8 @@ Digest keyOf(const LightPathOptions& o, const Coding& c) {
       .add(o.transfer)
       .add(o.walks)
       .add(o.near)
+      .add(o.receivers)
+      .add(o.probe_spacing)
       .add(o.elements)
       .add(o.element_rays)
       .add(o.exit_side)
@@ -181,10 +192,16 @@ codec::ColumnClusters clusterEntries(const transport::Entries& entries, float sp
 
 codec::Transfer matrixOf(const LightPaths& paths) {
   const transport::ExitTiles& tiles = paths.tiles();
-  return {.rows = static_cast<std::uint32_t>(paths.exits().size()),
+  const std::uint32_t each = paths.exits().rows_each;
+  codec::RowTiles rows;
+  for (const std::uint32_t first : tiles.first) rows.first.push_back(first * each);
+  for (std::size_t i = 0; i < tiles.row.size(); ++i)
+    for (std::uint32_t k = 0; k < each; ++k)
+      rows.row.push_back(tiles.row[i] * each + k), rows.blend.push_back(tiles.blend[i]);
+  return {.rows = static_cast<std::uint32_t>(paths.exits().size()) * each,
           .columns = static_cast<std::uint32_t>(paths.entries().size()),
           .channels = 3,
-          .tiles = {.first = tiles.first, .row = tiles.row, .blend = tiles.blend},
+          .tiles = std::move(rows),
           .source = [&paths](std::size_t tile, std::span<float> out) { paths.rows(tile, out); }};
 }
 
@@ -197,6 +214,29 @@ asset::Entries storedEntries(const transport::Entries& entries) {
   // Rounded to the grid of the file they must not lie in their own shadow.
   const float step = asset::entryPointStep(stored);
   for (std::size_t i = 0; i < stored.position.size(); ++i) stored.position[i] += step * stored.normal[i];
+  return stored;
+}
+
+asset::Exits storedExits(const transport::Exits& exits) {
+  asset::Exits stored{.side = exits.side, .exit_of_texel = exits.of_texel, .vertices = {}, .probes = {}};
+  if (!exits.vertices_of_texel.empty()) {
+    stored.kind = asset::Exits::Kind::kVertices;
+    for (const transport::Exit& e : exits.all)
+      stored.vertices.position.push_back(e.position), stored.vertices.normal.push_back(e.normal);
+    for (const transport::TexelVertices& t : exits.vertices_of_texel) {
+      const auto first = static_cast<std::uint8_t>(std::lround(255 * t.weight.x)),
+                 second =
+                     static_cast<std::uint8_t>(std::min<long>(std::lround(255 * t.weight.y), 255L - first));
+      for (const std::uint32_t exit : t.exit) stored.vertices.texel_exit.push_back(exit);
+      for (const int w : {int{first}, int{second}, 255 - first - second})
+        stored.vertices.texel_weight.push_back(static_cast<std::uint8_t>(w));
+    }
+  }
+  if (!exits.grid.exit.empty()) {
+    stored.kind = asset::Exits::Kind::kProbes;
+    const UVec3 n = exits.grid.count;
+    stored.probes = {exits.grid.origin, exits.grid.spacing, {n.x, n.y, n.z}, exits.grid.exit};
+  }
   return stored;
 }
 
@@ -253,7 +293,7 @@ WholeLayer solveLightPaths(const LayerContext& context, const LightPathOptions& 
   const asset::Transfer transfer{
       .matrix = std::move(encoded.matrix),
       .entries = storedEntries(paths.entries()),
-      .exits = {.side = options.exit_side, .exit_of_texel = paths.exits().of_texel},
+      .exits = storedExits(paths.exits()),
       .near_share = options.near > 0 ? paths.nearShares(progress) : std::vector<Vec3>()};
   solved.layer.tables = asset::transferTables(transfer, context.table);
   solved.layer.samples = options.exit_rays;
@@ -273,7 +313,7 @@ double forecastLightPaths(const LayerContext& context, LightPathOptions options,
   const std::size_t tiles = paths.tiles().size();
   if (tiles == 0) return 0;
   const std::size_t tile = tiles / 2, rows = paths.tiles().first[tile + 1] - paths.tiles().first[tile];
-  std::vector<float> out(rows * 3 * paths.entries().size());
+  std::vector<float> out(rows * paths.exits().rows_each * 3 * paths.entries().size());
   paths.rows(tile, out);
   const double one_tile = steadySeconds() - solved;
   constexpr double kGrowth = 1.5 * kLess;  // between the rays' and the rows'

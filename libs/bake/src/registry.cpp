@@ -139,7 +139,13 @@ std::vector<LayerKind> makeRegistry() {
              "all",
              {"all", "down", "up"},
              "entries=shot: which way lamps shine from there; down and up cosine-weighted"},
-            {"size", Type::kCount, "256", {}, "exits of light along the side of a page, at most"},
+            {"exits",
+             Type::kChoice,
+             "texels",
+             {"texels", "vertices", "probes"},
+             "where light leaves: blocks of texels, vertices, or a grid of probes with light from all sides"},
+            {"size", Type::kCount, "256", {}, "exits=texels: exits along the side of a page, at most"},
+            {"spacing", Type::kLength, "auto", {}, "exits=probes: metres between probes"},
             {"transfer",
              Type::kChoice,
              "gather",
@@ -259,6 +265,10 @@ Parameters resolve(const LayerKind& kind, const LayerSpec& spec, float scene_dia
   // Automatic lengths, in the order in which they depend on one another.
   if (kind.has("distance")) result.emplace("distance", static_cast<double>(autoDistance(scene_diagonal)));
   constexpr double kNearShare = 0.125;  // half a metre in scenes of human scale
+  if (kind.has("spacing")) {
+    constexpr double kSpacingShare = 0.25;  // a metre in scenes of human scale
+    result.emplace("spacing", kSpacingShare * static_cast<double>(autoDistance(scene_diagonal)));
+  }
   if (kind.has("near")) {
     result.emplace("near", kNearShare * static_cast<double>(autoDistance(scene_diagonal)));
     if (!(std::get<double>(result["near"]) < kInfinity))

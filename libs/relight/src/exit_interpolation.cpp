@@ -102,6 +102,17 @@ ExitInterpolation::ExitInterpolation(const asset::Exits& exits, std::size_t exit
   }
 }
 
+ExitInterpolation::ExitInterpolation(const asset::VertexExits& vertices) : first_{0} {
+  for (std::size_t i = 0; i < vertices.texel_exit.size(); i += 3) {
+    for (std::size_t k = i; k < i + 3; ++k) {
+      if (vertices.texel_weight[k] == 0) continue;
+      exit_.push_back(vertices.texel_exit[k]);
+      weight_.push_back(static_cast<float>(vertices.texel_weight[k]) / 255.0f);
+    }
+    first_.push_back(static_cast<std::uint32_t>(exit_.size()));
+  }
+}
+
 void ExitInterpolation::apply(std::span<const Irradiance> exits, std::span<Irradiance> texels) const {
   struct Job {
     const ExitInterpolation& self;

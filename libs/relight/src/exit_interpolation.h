@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From blocks of texels to texels: bilinear between the middles of blocks, within a chart.
+// From exits to texels: bilinear between the middles of blocks, within a chart; of vertices within a
+// triangle.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,6 +16,8 @@ class ExitInterpolation {
   /// Blocks of one chart blend with their neighbours of the same chart, but not where normals turn by more
   /// than 45 degrees; where a neighbour is missing those that are there share its weight.
   ExitInterpolation(const asset::Exits& exits, std::size_t exit_count, const asset::AtlasTable& atlas);
+
+  explicit ExitInterpolation(const asset::VertexExits& vertices);
 
   std::size_t texelCount() const { return first_.size() - 1; }
   /// exits: [exits]; texels: [texels of the atlas table]

@@ -12,6 +12,7 @@
 #include "block_product.h"
 #include "entry_lights.h"
 #include "exit_interpolation.h"
+#include "probe_field.h"
 #include "relume/asset/transfer.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
@@ -28,6 +29,12 @@ BlockProduct productOf(const codec::BlockMatrix& m, const asset::Layer& layer) {
   }
 }
 
+ExitInterpolation interpolationOf(const asset::Exits& exits, std::size_t rows,
+                                  const asset::AtlasTable& atlas) {
+  if (exits.kind != asset::Exits::Kind::kTexels) return ExitInterpolation(exits.vertices);
+  return {exits, rows, atlas};
+}
+
 bool sameBits(std::span<const Irradiance> a, std::span<const Irradiance> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
@@ -39,19 +46,37 @@ struct TransferRelighter::Impl {
       : product(productOf(transfer.matrix, layer)),
         lights(transfer.entries, transfer.near_share.empty() ? std::span<const Point>() : atlas.position,
                transfer.near_share.empty() ? std::span<const Normal>() : atlas.normal),
-        interpolation(transfer.exits, transfer.matrix.rows, atlas),
+        interpolation(interpolationOf(transfer.exits, transfer.matrix.rows, atlas)),
+        exit_kind(transfer.exits.kind),
+        vertices(std::move(transfer.exits.vertices)),
+        field(std::move(transfer.exits.probes)),
         entries(std::move(transfer.entries)),
         shown(entries.size()),
         weighted(entries.size()),
         exits(product.rows()),
-        texels(interpolation.texelCount()),
+        texels(atlas.texel.size()),
         near_share(std::move(transfer.near_share)),
         points(entries.position),
         normals(entries.normal) {
+    if (exit_kind == asset::Exits::Kind::kProbes)
+      texel_position = atlas.position, texel_normal = atlas.normal;
     if (near_share.empty()) return;
     points.insert(points.end(), atlas.position.begin(), atlas.position.end());
     normals.insert(normals.end(), atlas.normal.begin(), atlas.normal.end());
     direct.resize(near_share.size());
+  }
+
+  /// From exits to texels.
+  void interpolate() {
+    if (exit_kind != asset::Exits::Kind::kProbes) return interpolation.apply(exits, texels);
+    struct Job {
+      Impl& self;
+    } job{*this};
+    parallelFor(texels.size(), 1024, [&job](std::size_t begin, std::size_t end) {
+      Impl& self = job.self;
+      for (std::size_t i = begin; i < end; ++i)
+        self.texels[i] = self.field.at(self.texel_position[i], self.texel_normal[i], self.exits);
+    });
   }
 
   /// asset/transfer.h, NearShares.
@@ -69,14 +94,19 @@ struct TransferRelighter::Impl {
 
   BlockProduct product;
   EntryLights lights;
-  ExitInterpolation interpolation;
+  ExitInterpolation interpolation;  ///< of blocks and vertices
+  asset::Exits::Kind exit_kind;
+  asset::VertexExits vertices;
+  ProbeField field;
   asset::Entries entries;
   std::vector<Irradiance> shown;  ///< what exits were computed for, zero at first
   std::vector<Irradiance> weighted;
   std::vector<Irradiance> exits, texels;
-  asset::NearShares near_share;    ///< empty: no short ways are left out
-  std::vector<Irradiance> direct;  ///< by texel, where they are
-  std::vector<Point> points;       ///< where visibility is asked
+  asset::NearShares near_share;       ///< empty: no short ways are left out
+  std::vector<Irradiance> direct;     ///< by texel, where they are
+  std::vector<Point> texel_position;  ///< of probes
+  std::vector<Normal> texel_normal;
+  std::vector<Point> points;  ///< where visibility is asked
   std::vector<Normal> normals;
   bool texels_current = true;
 };
@@ -90,6 +120,13 @@ TransferRelighter::TransferRelighter(TransferRelighter&&) noexcept = default;
 std::size_t TransferRelighter::entryCount() const { return impl_->entries.size(); }
 std::size_t TransferRelighter::exitCount() const { return impl_->exits.size(); }
 std::size_t TransferRelighter::texelCount() const { return impl_->texels.size(); }
+asset::Exits::Kind TransferRelighter::exitKind() const { return impl_->exit_kind; }
+const asset::VertexExits& TransferRelighter::vertices() const { return impl_->vertices; }
+const asset::ProbeExits& TransferRelighter::probes() const { return impl_->field.probes(); }
+Irradiance TransferRelighter::atProbes(Point p, Normal n) const {
+  if (impl_->exit_kind != asset::Exits::Kind::kProbes) return Irradiance(0.0f);
+  return impl_->field.at(p, n, impl_->exits);
+}
 std::span<const Point> TransferRelighter::entryPoints() const { return impl_->entries.position; }
 std::span<const Normal> TransferRelighter::entryNormals() const { return impl_->entries.normal; }
 std::size_t TransferRelighter::pointsPerEntry() const { return impl_->entries.samples; }
@@ -134,7 +171,7 @@ std::span<const Irradiance> TransferRelighter::relight(std::span<const Irradianc
 std::span<const Irradiance> TransferRelighter::texels() {
   Impl& i = *impl_;
   if (!i.texels_current) {
-    i.interpolation.apply(i.exits, i.texels);
+    i.interpolate();
     if (!i.near_share.empty()) i.addShortWays();
   }
   i.texels_current = true;

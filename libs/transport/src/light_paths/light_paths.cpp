@@ -22,6 +22,7 @@
 #include "light_paths/light_walks.h"
 #include "light_paths/piece_entries.h"
 #include "light_paths/places.h"
+#include "light_paths/point_exits.h"
 #include "light_paths/shot_entries.h"
 #include "light_paths/typical_light.h"
 #include "light_paths/vector_row.h"
@@ -53,6 +54,10 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
   require(o.entry_samples > 0 && o.entry_samples <= 1024, "samples of an entry are not between 1 and 1024",
           "16 are enough for lights that keep away from walls");
   require(o.near >= 0.0f && o.near < kInfinity, "the way that is near is no length", "take half a metre");
+  require(o.receivers == Receivers::kTexels || (o.near == 0 && o.transfer == TransferBy::kGathering),
+          "short ways and walks are for exits at texels", "take one or the other");
+  require(o.probe_spacing > 0 && o.probe_spacing < kInfinity, "the spacing of probes is no length",
+          "take a metre");
   require(o.walks > 0 && o.walks <= 1u << 16, "walks of an entry are not between 1 and 65536", "16 do");
   require(o.test_points > 0 && o.test_points <= 1u << 16, "test points are not between 1 and 65536",
           "128 do");
@@ -139,7 +144,11 @@ struct LightPaths::Impl {
                    options.seed + 0x9e3779b97f4a7c15u, BlockSamples::kShared),
         exit_scene{surface,    exit_patches,      sides,        pieces,      elements, reflectance,
                    directions, options.exit_rays, options.seed, options.near} {
-    placeExits(progress);
+    if (options.receivers == Receivers::kTexels) {
+      placeExits(progress);
+    } else {
+      placePoints(atlas, progress);
+    }
     placeAll(progress);
     if (options.transfer == TransferBy::kWalks) {
       virtual_lights = walk({surface, sides, reflectance}, walk_starts, options.walk_seed, progress);
@@ -165,6 +174,15 @@ struct LightPaths::Impl {
     exits.of_texel = exit_patches.patch_of;
     exits.buried.assign(sides.buriedPoints().begin(), sides.buriedPoints().end());
     tiles = makeTiles(exits.all, options.tile_exits, options.tile_overlap, options.seed, progress);
+  }
+
+  void placePoints(const atlas::Atlas& atlas, Progress& progress) {
+    points = options.receivers == Receivers::kVertices
+                 ? vertexExits(tracer.scene(), atlas, texels)
+                 : probeExits(tracer, tracer.scene().bounds(), options.probe_spacing);
+    exits = points.exits;
+    const std::uint32_t each = std::max(options.tile_exits / exits.rows_each, 1u);
+    tiles = makeTiles(exits.all, each, options.tile_overlap, options.seed, progress);
   }
 
   void placeAll(Progress& progress) {
@@ -311,11 +329,32 @@ struct LightPaths::Impl {
     }
   }
 
+  /// What exits see, one thread's.
+  struct Look {
+    explicit Look(const Impl& impl)
+        : of(impl),
+          views(impl.exits.rows_each),
+          blocks(impl.exit_scene),
+          points(impl.exit_scene, impl.points) {}
+    void at(std::size_t exit) {
+      if (of.options.receivers == Receivers::kTexels) {
+        blocks.look(of.gathered_from[exit], views[0]);
+      } else {
+        points.look(exit, views);
+      }
+    }
+    const Impl& of;
+    std::vector<ExitView> views;  // by row
+    ExitRays blocks;
+    PointRays points;
+  };
+
   void rows(std::size_t tile, std::span<float> out) const {
     const auto of =
         std::span(tiles.row).subspan(tiles.first[tile], tiles.first[tile + 1] - tiles.first[tile]);
     const std::size_t columns = entries.size();
-    RELUME_CHECK_EQ(out.size(), of.size() * 3 * columns);
+    const std::size_t each = exits.rows_each, rows = of.size() * each;
+    RELUME_CHECK_EQ(out.size(), rows * 3 * columns);
     std::fill(out.begin(), out.end(), 0.0f);
     if (options.transfer == TransferBy::kWalks) {
       for (std::size_t r = 0; r < of.size(); ++r)
@@ -323,12 +362,12 @@ struct LightPaths::Impl {
                 columns, out.subspan(r * 3 * columns, 3 * columns));
       return;
     }
-    ExitRays exit_rays(exit_scene);
-    ExitView view;
+    Look look(*this);
     std::vector<Weight> weights;
     std::vector<std::size_t> begins(1, 0);
-    for (std::size_t r = 0; r < of.size(); ++r) {
-      exit_rays.look(gathered_from[of[r]], view);
+    for (std::size_t r = 0; r < rows; ++r) {
+      if (r % each == 0) look.at(of[r / each]);
+      const ExitView& view = look.views[r % each];
       float* row = out.data() + r * 3 * columns;
       for (const Weight& w : view.direct)
         for (const EntryShare& s : piece_entries.of(w.index))
@@ -340,7 +379,7 @@ struct LightPaths::Impl {
     for (std::size_t block = 0; block < reflected->blocks(); ++block) {
       const std::size_t begin = block * ElementLight::kBlock,
                         count = std::min(ElementLight::kBlock, columns - begin);
-      for (std::size_t r = 0; r < of.size(); ++r) {
+      for (std::size_t r = 0; r < rows; ++r) {
         const std::array<float, ElementLight::kRow> sum =
             gather(*reflected, block, std::span(weights).subspan(begins[r], begins[r + 1] - begins[r]));
         float* row = out.data() + r * 3 * columns + begin;
@@ -451,15 +490,16 @@ struct LightPaths::Impl {
               }
         },
         kResidual, progress);
-    std::vector<Irradiance> result(lights.size() * exits.size());
+    const std::size_t each = exits.rows_each, rows = exits.size() * each;
+    std::vector<Irradiance> result(lights.size() * rows);
     const Stage stage(progress, "exits", exits.size());
     parallelFor(
         exits.size(), kExitGrain,
         [&](std::size_t begin, std::size_t end) {
-          ExitRays exit_rays(exit_scene);
-          ExitView view;
-          for (std::size_t x = begin; x < end; ++x) {
-            exit_rays.look(gathered_from[x], view);
+          Look look(*this);
+          for (std::size_t x = begin * each; x < end * each; ++x) {
+            if (x % each == 0) look.at(x / each);
+            const ExitView& view = look.views[x % each];
             for (std::size_t block = 0; block < of_lights.blocks(); ++block) {
               const auto sum = gather(of_lights, block, view.reflected);
               const std::size_t begins = block * ElementLight::kBlock;
@@ -467,7 +507,7 @@ struct LightPaths::Impl {
                 Vec3 e(sum[l - begins], sum[ElementLight::kBlock + l - begins],
                        sum[2 * ElementLight::kBlock + l - begins]);
                 for (const Weight& w : view.direct) e += w.value * on_piece[l * pieces.size() + w.index];
-                result[l * exits.size() + x] = Irradiance(e);
+                result[l * rows + x] = Irradiance(e);
               }
             }
           }
@@ -494,6 +534,7 @@ struct LightPaths::Impl {
   std::vector<Place> entry_places;
   Entries entries;
   Exits exits;
+  PointExits points;  // of exits that are no blocks
   ExitTiles tiles;
   Elements elements;
   FirstReflection first;

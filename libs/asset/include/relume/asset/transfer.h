@@ -2,6 +2,7 @@
 // Transfer of light as a layer keeps it: what the bake writes and the run time reads (docs/format.md, kind
 // `lightpath`).
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,10 +23,35 @@ struct Entries {
   std::size_t size() const { return area.size(); }
 };
 
-/// Where it leaves: blocks of side x side texels of the atlas, of one chart each.
+/// Exits at vertices of meshes: a row of the matrix for each. A vertex of a mesh has the exit at its place in
+/// the world whose normal is its own.
+struct VertexExits {
+  std::vector<Point> position;  ///< world; shape: [exits]
+  std::vector<Normal> normal;   ///< world, unit length; shape: [exits]
+  // The triangle that a texel lies on. shape: [texels of the atlas table][3]
+  std::vector<std::uint32_t> texel_exit;
+  std::vector<std::uint8_t> texel_weight;  ///< of 255, which they sum to
+};
+
+/// Exits at probes: places origin + spacing (i, j, k), i < count[0] and so on. A probe has 9 rows of the
+/// matrix: irradiance along n is the sum of row 9 p + m times basis::sh9(n)[m].
+struct ProbeExits {
+  static constexpr std::uint32_t kRows = 9;
+  static constexpr std::uint32_t kNoProbe = 0xffffffffu;
+  Point origin{0};
+  float spacing = 1;  ///< metres
+  std::array<std::uint32_t, 3> count{};
+  std::vector<std::uint32_t> probe;  ///< shape: [count[2]][count[1]][count[0]]; kNoProbe: in a body
+};
+
+/// Where it leaves: blocks of side x side texels of the atlas, of one chart each, or one of the others.
 struct Exits {
-  std::uint32_t side = 1;                    ///< texels along a block
+  enum class Kind : std::uint8_t { kTexels, kVertices, kProbes };
+  Kind kind = Kind::kTexels;
+  std::uint32_t side = 1;                    ///< texels along a block; 0: exits are no blocks
   std::vector<std::uint32_t> exit_of_texel;  ///< shape: [texels of the atlas table]; a row of the matrix
+  VertexExits vertices;
+  ProbeExits probes;
 };
 
 /// What the matrix leaves out of light whose last way is short, by texel: the share of directions in which
@@ -37,7 +63,7 @@ using NearShares = std::vector<Vec3>;  ///< shape: [texels of the atlas table], 
 /// Irradiance of exit x = sum over entries e of matrix[x][e] weight[e] mean over e's points of their direct
 /// irradiance. Indirect light alone: the direct light at the exit is not in it.
 struct Transfer {
-  codec::BlockMatrix matrix;  ///< rows: exits, columns: entries
+  codec::BlockMatrix matrix;  ///< rows: exits (of probes 9 for each), columns: entries
   Entries entries;
   Exits exits;
   NearShares near_share;

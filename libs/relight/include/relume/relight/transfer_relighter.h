@@ -9,6 +9,7 @@
 #include <span>
 
 #include "relume/asset/asset.h"
+#include "relume/asset/transfer.h"
 #include "relume/relight/light_set.h"
 #include "relume/relight/visibility.h"
 
@@ -30,7 +31,15 @@ class TransferRelighter {
   TransferRelighter(TransferRelighter&&) noexcept;
 
   std::size_t entryCount() const;
-  std::size_t exitCount() const;
+  std::size_t exitCount() const;  ///< rows of the transfer: of probes 9 each
+  /// Where light leaves, and at vertices and probes which row of relight() is whose.
+  asset::Exits::Kind exitKind() const;
+  const asset::VertexExits& vertices() const;
+  const asset::ProbeExits& probes() const;
+  /// Of a bake at probes: what relight gave last, on a plane at `p` that faces along `n`, e.g. of something
+  /// that moves. From the eight probes about p, less from those behind the plane; 0 where none is near, and
+  /// of bakes that are not at probes.
+  Irradiance atProbes(Point p, Normal n) const;
   std::size_t texelCount() const;
 
   /// The points at which light enters, each entry's together: where visibility is asked. World; shape:
@@ -58,9 +67,9 @@ class TransferRelighter {
   void forgetVisibility();
 
   /// Indirect irradiance of each exit for any irradiance of entries, e.g. from an engine's own cube maps.
-  /// Shape: [exits]; valid until the next call. Entries that are the same as in the call before cost nothing;
-  /// clusters of entries that are dark cost nothing. Throws Error kInvalidValue unless all are of magnitude
-  /// 1e20 or less.
+  /// Shape: [exits], of probes [probes][9] coefficients; valid until the next call. Entries that are the same
+  /// as in the call before cost nothing; clusters of entries that are dark cost nothing. Throws Error
+  /// kInvalidValue unless all are of magnitude 1e20 or less.
   std::span<const Irradiance> relight(std::span<const Irradiance> entry_irradiance);
   /// What relight gave last, at each texel of the atlas table; zero before. Where short ways are left out,
   /// they are made up for by the direct light of the last call of entryIrradiance. Shape: [texels]; valid

@@ -12,6 +12,7 @@
 // Conventions: docs/concept.md. Light leaves surfaces as from ideal diffuse reflectors, on both sides, as in
 // lightmap.h. Limits: static surfaces only.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -38,6 +39,12 @@ enum class TransferBy : std::uint8_t {
   kWalks,      ///< random walks from the entries, connected to all exits ([USKP09] 7.2): slow, for comparison
 };
 
+enum class Receivers : std::uint8_t {
+  kTexels,    ///< exits are blocks of texels
+  kVertices,  ///< of static meshes
+  kProbes,    ///< a grid in space; irradiance on all sides as spherical harmonics of 9 coefficients
+};
+
 struct LightPathOptions {
   std::uint32_t entries = 1024;  ///< about so many; a few more where walls divide patches
   EntryPlacement placement = EntryPlacement::kPatches;
@@ -52,6 +59,8 @@ struct LightPathOptions {
   std::uint64_t walk_seed = 1;  ///< other walks from the same entries
   /// Metres: light whose last way to an exit is shorter is not in T ([USKP09] 7.2); nearShares tells of it.
   float near = 0.0f;
+  Receivers receivers = Receivers::kTexels;
+  float probe_spacing = 1.0f;      ///< metres, of kProbes
   std::uint32_t exit_side = 4;     ///< texels along an exit, which is a block of one chart; 1 to 64
   std::uint32_t exit_rays = 1024;  ///< of an exit, rounded up to 2^k for each of its texels
   std::uint32_t tile_exits = 128;  ///< exits of a tile, on average, without overlap
@@ -76,19 +85,39 @@ struct Entries {
   std::size_t size() const { return area.size(); }
 };
 
-/// A block of texels of one chart that share a value.
+/// A block of texels of one chart that share a value, a vertex or a probe.
 struct Exit {
   std::uint32_t chart = 0, page = 0;
   std::uint32_t x = 0, y = 0;  ///< of the block in its page, in blocks
   Point position{0};           ///< in the middle, on the surface
-  Normal normal{0, 0, 1};
-  float area = 0;       ///< m^2, of what can be seen
-  bool filled = false;  ///< none of it can be seen; it has the light of an exit beside it
+  Normal normal{0, 0, 1};      ///< a probe has none
+  float area = 0;              ///< m^2, of what can be seen; of a vertex a third of its triangles
+  bool filled = false;         ///< none of it can be seen; it has the light of an exit beside it
+};
+
+/// Which vertices a texel lies between, and their weights.
+struct TexelVertices {
+  std::array<std::uint32_t, 3> exit{};
+  Vec3 weight{1, 0, 0};  ///< sum 1
+};
+
+/// Places origin + spacing (i, j, k), i < count.x and so on.
+struct ProbeGrid {
+  Point origin{0};
+  float spacing = 1;  ///< metres
+  UVec3 count{0};
+  /// The exit at (k count.y + j) count.x + i; scene::kNone where bodies are.
+  std::vector<std::uint32_t> exit;
 };
 
 struct Exits {
-  std::uint32_t side = 0;  ///< texels along a block
+  std::uint32_t side = 0;  ///< texels along a block; 0: exits are no blocks, and the next two are empty
   std::vector<Exit> all;   ///< by page, row and column of blocks
+  /// Rows of the transfer that an exit has: 1, of a probe 9: irradiance coefficients by basis::sh9, so that
+  /// irradiance along n is the sum of row k times sh9(n)[k].
+  std::uint32_t rows_each = 1;
+  std::vector<TexelVertices> vertices_of_texel;  ///< of kVertices, by index into Texels::points
+  ProbeGrid grid;                                ///< of kProbes
   /// By index into Texels::points. Two exits can share a block of a chart, where it goes round an edge.
   std::vector<std::uint32_t> of_texel;
   /// By index into Texels::points: inside other geometry, so its own irradiance is no part of its exit's.
@@ -130,7 +159,8 @@ class LightPaths {
   std::uint64_t bytes() const;  ///< of memory held, about
   std::uint64_t rays() const;   ///< traced while solving
 
-  /// The transfer to the exits of a tile, not blended. out: shape [rows of tile][3 channels][entries].
+  /// The transfer to the exits of a tile, not blended. out: shape [exits of tile][rows_each][3 channels]
+  /// [entries].
   /// From many threads at once; the same bits every time.
   void rows(std::size_t tile, std::span<float> out) const;
 
@@ -148,7 +178,7 @@ class LightPaths {
   std::vector<float> entryIrradiance(std::span<const Light> lights, Progress& progress) const;
 
   /// Indirect irradiance at exits, colours of lights included, by the same gather rays as rows(): what parts
-  /// the error of entries from that of all else. Shape: [lights][exits].
+  /// the error of entries from that of all else. Shape: [lights][exits * rows_each].
   std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by, Progress& progress) const;
 
  private:
