@@ -50,11 +50,22 @@ Seen seenAlong(const trace::Tracer& tracer, const picture::BakedValues& baked, c
 
 }  // namespace
 
+std::uint32_t samplesOfPlace(const ViewOptions& options) {
+  return std::max(options.samples / (2 * kPlaces), 1u);
+}
+
 ComparedView lightmapView(const transport::Reference& reference, const asset::Asset& asset,
                           const asset::Layer& layer, const picture::Viewpoint& viewpoint,
                           const ViewOptions& options, std::uint64_t seed, Progress& progress) {
+  const picture::BakedValues baked(reference.tracer().scene(), &asset, picture::View::kLightmap, layer.name);
+  return comparedView(reference, {baked, truthOf(layer, samplesOfPlace(options), seed), {}}, viewpoint,
+                      options, seed, progress);
+}
+
+ComparedView comparedView(const transport::Reference& reference, const ComparedLight& light,
+                          const picture::Viewpoint& viewpoint, const ViewOptions& options, std::uint64_t seed,
+                          Progress& progress) {
   const trace::Tracer& tracer = reference.tracer();
-  const picture::BakedValues baked(tracer.scene(), &asset, picture::View::kLightmap, layer.name);
   const picture::PrimaryRays rays(viewpoint, options.size.x, options.size.y);
   const auto width = static_cast<std::size_t>(options.size.x),
              height = static_cast<std::size_t>(options.size.y);
@@ -67,17 +78,17 @@ ComparedView lightmapView(const transport::Reference& reference, const asset::As
       const Vec2 corner(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
       const Vec2 inside = (Vec2(static_cast<float>(k % kAlong), static_cast<float>(k / kAlong)) + 0.5f) /
                           static_cast<float>(kAlong);
-      seen[i] = seenAlong(tracer, baked, rays.at(corner + inside),
+      seen[i] = seenAlong(tracer, light.baked, rays.at(corner + inside),
                           hashCombine(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(i)),
                           view.background);
+      if (light.besides && seen[i].colour != Vec3(0)) seen[i].baked += light.besides(seen[i].receiver);
     }
   });
 
   std::vector<transport::Receiver> receivers;
   for (const Seen& s : seen)
     if (s.colour != Vec3(0)) receivers.push_back(s.receiver);
-  const std::uint32_t samples = std::max(options.samples / (2 * kPlaces), 1u);
-  transport::ReferenceOptions truth = truthOf(layer, samples, seed);
+  transport::ReferenceOptions truth = light.truth;
   const auto first = reference.irradiance(receivers, truth, progress);
   truth.seed = independentSeed(seed);
   const auto second = reference.irradiance(receivers, truth, progress);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "report_charts.h"
 #include "report_parts.h"
@@ -21,11 +23,44 @@ const char* colourOf(double error) { return error < kGood ? "good" : error < kBa
 
 }  // namespace
 
-Json toJson(const RelitVerification& v) {
+double unexplained(const RelitVerification& v, const asset::TransferErrors& e) {
+  const auto square = [](double x) { return x * x; };
+  const double explained = square(static_cast<double>(e.entries)) + square(static_cast<double>(e.transfer)) +
+                           square(static_cast<double>(e.encoding));
+  return std::sqrt(std::max(square(v.median) - explained, 0.0));
+}
+
+namespace {
+
+/// The parameter that lessens the largest part.
+std::string remedyOf(const RelitVerification& v, const asset::TransferErrors& e) {
+  const std::array<std::pair<double, const char*>, 4> parts = {
+      {{static_cast<double>(e.entries), "irradiance is taken at too few entries: raise <code>count=</code>"},
+       {static_cast<double>(e.transfer),
+        "the transfer is noisy: raise <code>rays=</code> (of random walks <code>walks=</code>)"},
+       {static_cast<double>(e.encoding), "the encoding takes most: lower <code>error=</code>"},
+       {unexplained(v, e),
+        "what is left comes from interpolation between exits, and from small elements: raise "
+        "<code>size=</code> (of probes lower <code>spacing=</code>), or take a higher quality"}}};
+  return std::string("Largest part of the error: ") +
+         std::max_element(parts.begin(), parts.end(),
+                          [](const auto& a, const auto& b) { return a.first < b.first; })
+             ->second +
+         ".";
+}
+
+}  // namespace
+
+Json toJson(const RelitVerification& v, const std::optional<asset::TransferErrors>& errors) {
   Json out{{"layer", v.layer},         {"points", v.points},
            {"paths", v.paths},         {"spacing", v.spacing},
            {"median_error", v.median}, {"mean_error", v.mean},
            {"worst_error", v.worst},   {"encoding_error", v.error_estimate}};
+  if (errors)
+    out["causes"] = {{"entries", errors->entries},
+                     {"transfer_noise", errors->transfer},
+                     {"encoding", errors->encoding},
+                     {"rest_of_median", unexplained(v, *errors)}};
   out["lamps"] = Json::array();
   for (const LampAgreement& lamp : v.lamps) {
     const Point p = lamp.lamp.position;
@@ -37,7 +72,7 @@ Json toJson(const RelitVerification& v) {
   return out;
 }
 
-Comparison compareRelit(const RelitVerification& v) {
+Comparison compareRelit(const RelitVerification& v, const std::optional<asset::TransferErrors>& errors) {
   Comparison c;
   c.id = "relit", c.title = fmt::format("Layer {}: lamps that were not there", escapeHtml(v.layer));
   c.summary = fmt::format(
@@ -49,9 +84,20 @@ Comparison compareRelit(const RelitVerification& v) {
       v.lamps.size(), v.points, 1e-6 * static_cast<double>(v.paths), v.spacing);
   c.figures = {{share(v.median), "error under the median lamp", colourOf(v.median)},
                {share(v.mean), "error in the mean over lamps", colourOf(v.mean)},
-               {share(v.worst), "error under the worst lamp", ""},
-               {share(v.error_estimate), "of it from encoding, as the bake measured", ""}};
-  if (v.mean > kGood)
+               {share(v.worst), "error under the worst lamp", ""}};
+  if (errors) {
+    const auto part = [&](double x, const char* what) { c.figures.push_back({share(x), what, ""}); };
+    part(static_cast<double>(errors->entries),
+         "of it from taking irradiance at entries, as the bake measured");
+    part(static_cast<double>(errors->transfer), "of it noise of the transfer, as the bake measured");
+    part(static_cast<double>(errors->encoding), "of it from encoding, as the bake measured");
+    part(unexplained(v, *errors), "left of the median: interpolation between exits, and elements");
+  } else {
+    c.figures.push_back({share(v.error_estimate), "of it from encoding, as the bake measured", ""});
+  }
+  if (v.mean > kGood && errors)
+    c.findings.push_back({remedyOf(v, *errors), colourOf(v.mean)});
+  else if (v.mean > kGood)
     c.findings.push_back(
         {"More entries (<code>count=</code>) help lamps near walls; a smaller "
          "<code>error=</code> helps where encoding is a large part.",
@@ -73,7 +119,7 @@ Comparison compareRelit(const RelitVerification& v) {
                           fmt::format("{:+.2f} %", 100 * lamp->bias)});
   }
   c.tables.push_back(std::move(table));
-  c.numbers = toJson(v);
+  c.numbers = toJson(v, errors);
   return c;
 }
 

@@ -41,12 +41,18 @@ void print(const Verification& v) {
                p.truth_error, p.object, p.position.x, p.position.y, p.position.z);
 }
 
-void print(const RelitVerification& v) {
+void print(const RelitVerification& v, const std::optional<asset::TransferErrors>& causes) {
   fmt::print("{}: {} lamps, {} places, {} paths; entries {:.2f} m wide\n", v.layer, v.lamps.size(), v.points,
              v.paths, v.spacing);
   fmt::print(
       "error of indirect irradiance: median {:.2f} %, mean {:.2f} %, worst {:.2f} %; encoding {:.2f} %\n",
       v.median * 100, v.mean * 100, v.worst * 100, v.error_estimate * 100);
+  if (causes)
+    fmt::print(
+        "by cause, as the bake measured: entries {:.2f} % (count=), noise of the transfer {:.2f} % (rays=), "
+        "encoding {:.2f} % (error=); left of the median {:.2f} %, from interpolation between exits and from "
+        "elements (size=)\n",
+        causes->entries * 100, causes->transfer * 100, causes->encoding * 100, unexplained(v, *causes) * 100);
 }
 
 /// Transfer is compared where it is asked for, and where there is nothing else.
@@ -66,8 +72,12 @@ Comparison verified(const VerifyCommandOptions& options, Opened& opened, const V
   if (comparesTransfer(asset, options.verify.layer)) {
     const RelitVerification v =
         verifyRelit(opened.scene, asset, options.verify, options.lamps, options.near, progress);
-    print(v);
-    return compareRelit(v);
+    const auto causes = asset::readTransfer(asset.layer(v.layer), asset.atlas).errors;
+    print(v, causes);
+    std::fflush(stdout);  // pictures take longer
+    Comparison comparison = compareRelit(v, causes);
+    if (pictures) comparison.views = relitViews(opened.scene, asset, v, views, options.verify.seed, progress);
+    return comparison;
   }
   lightScene(opened.scene, options.lights, "");
   const Verification v = verifyLightmap(opened.scene, asset, options.verify, progress);

@@ -117,13 +117,21 @@ class LightPath(test_cli.CliTest):
     def test_verify_with_random_lamps(self):
         self.small()
         report, numbers = self.folder / "report", self.folder / "v.json"
-        said = relume("verify", self.baked, "--points", 300, "--spp", 128, "--lamps", 5, "--json", numbers, "-o", report).stdout
+        said = relume("verify", self.baked, "--points", 300, "--spp", 128, "--lamps", 5, "--json", numbers, "-o", report, "--size", "48x32", "--picture-spp", 16).stdout
         self.assertIn("median", said)
         v = json.loads(numbers.read_text())
         self.assertEqual(len(v["lamps"]), 5)
         self.assertLess(v["median_error"], 0.1)
         self.assertTrue(all(lamp["clearance"] >= v["spacing"] for lamp in v["lamps"]))
         self.assertIn("Lamps", (report / "report.html").read_text())
+        views = json.loads((report / "report.json").read_text())["comparisons"][0]["views"]
+        self.assertEqual(len(views), 2)  # the median lamp and the worst one
+        for view in views:
+            for picture in ("baked", "truth", "flip"):
+                self.assertTrue((report / view[picture]).exists())
+            # Direct light is in both; what differs is the bake's, and the noise of few paths.
+            self.assertLess(abs(view["relative_bias"]), 0.1)
+            self.assertLess(view["relative_rmse"], 0.1 + 2 * view["relative_noise"])
         near = json.loads(relume("verify", self.baked, "--points", 300, "--spp", 128, "--lamps", 5, "--near", "--json", numbers) and numbers.read_text())
         self.assertTrue(all(lamp["clearance"] <= near["spacing"] for lamp in near["lamps"]))
         # A bake of other colours is seen.
@@ -134,6 +142,23 @@ class LightPath(test_cli.CliTest):
         glb.write_glb(other, document, binary)
         relume("verify", other, "--points", 300, "--spp", 128, "--lamps", 5, "--json", numbers)
         self.assertGreater(json.loads(numbers.read_text())["median_error"], 0.3)
+
+    def test_each_cause_of_error_has_its_parameter(self):
+        def causes(**given):
+            layer = {"count": 128, "rays": 256, "size": 64, "error": 0.03, **given}
+            self.bake("--layer", "lightpath:" + ",".join(f"{k}={v}" for k, v in layer.items()), "--quality", "draft", "--atlas-size", 128, scene=self.room)
+            path = self.folder / "causes.json"
+            said = relume("verify", self.baked, "--points", 50, "--spp", 32, "--lamps", 2, "--json", path).stdout
+            self.assertIn("by cause", said)
+            return json.loads(path.read_text())["causes"]
+
+        usual = causes()
+        self.assertLess(max(usual["entries"], usual["transfer_noise"], usual["encoding"]), 0.1)
+        self.assertLess(causes(count=1024)["entries"], 0.8 * usual["entries"])
+        self.assertGreater(causes(error=0.3)["encoding"], 3 * usual["encoding"])
+        rays = causes(rays=4096)
+        self.assertLess(rays["transfer_noise"], 0.5 * usual["transfer_noise"])
+        self.assertAlmostEqual(rays["entries"], usual["entries"], delta=0.3 * usual["entries"])
 
     def test_groups_are_dimmed_and_coloured(self):
         self.light(self.lamp(name="a"), self.lamp(name="b", position=[1, 2, 1]))

@@ -237,6 +237,9 @@ void Transfer::check(const AtlasTable& atlas, const std::string& layer) const {
   checkEntries(entries, matrix.columns, layer);
   checkExits(exits, matrix.rows, atlas, layer);
   checkNear(near_share, atlas.texel.size(), layer);
+  if (errors &&
+      !(soundAmount(errors->entries) && soundAmount(errors->transfer) && soundAmount(errors->encoding)))
+    corrupt(layer, "one of its errors is negative or not finite");
 }
 
 float entryPointStep(const Entries& entries) {
@@ -264,6 +267,8 @@ std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& at
       {"componentFirst", 1, m.component_first},
       {"scale", 1, m.scale}};
   addExits(transfer.exits, tables);
+  if (const auto& e = transfer.errors)
+    tables.push_back({"errors", 3, std::vector<float>{e->entries, e->transfer, e->encoding}});
   if (!entries.weight.empty()) tables.push_back({"entryWeight", 1, entries.weight});
   if (!transfer.near_share.empty()) tables.push_back({"nearShare", 3, encodeNear(transfer.near_share)});
   if (m.bits == 8) {
@@ -309,6 +314,11 @@ Transfer readTransfer(const Layer& layer, const AtlasTable& atlas) {
     const auto& q = tables.get<std::uint8_t>("nearShare", 3);
     for (std::size_t i = 0; i < q.size(); i += 3)
       t.near_share.push_back(Vec3(q[i], q[i + 1], q[i + 2]) / 255.0f);
+  }
+  if (tables.has("errors")) {
+    const auto& e = tables.get<float>("errors", 3);
+    if (e.size() != 3) corrupt(layer.name, "its table errors has more than one row");
+    t.errors = TransferErrors{e[0], e[1], e[2]};
   }
   t.check(atlas, layer.name);
   return t;

@@ -9,6 +9,7 @@
 #include <array>
 
 #include "forecast.h"
+#include "lightpath_errors.h"
 #include "relume/asset/transfer.h"
 #include "relume/codec/encode_clustered_pca.h"
 #include "relume/codec/encode_tiles.h"
@@ -104,7 +105,8 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
   if (const std::string& aim = word(parameters, "aim"); aim != "all")
     o.aim = Direction(0, aim == "down" ? -1 : 1, 0);
   o.elements = preset.elements;
-  o.exit_rays = context.quality.exact() ? context.quality.max_samples : preset.exit_rays;
+  o.exit_rays =
+      count(parameters, "rays", context.quality.exact() ? context.quality.max_samples : preset.exit_rays);
   const auto across = count(parameters, "size", 256);
   const auto side = static_cast<std::uint32_t>(std::max(context.texels.width, context.texels.height));
   o.exit_side = std::clamp((side + across - 1) / across, 1u, 64u);
@@ -290,11 +292,12 @@ WholeLayer solveLightPaths(const LayerContext& context, const LightPathOptions& 
   WholeLayer solved;
   solved.layer.parameters = costOf(encoded);
   solved.layer.error_estimate = encoded.report.error.mean;
-  const asset::Transfer transfer{
-      .matrix = std::move(encoded.matrix),
-      .entries = storedEntries(paths.entries()),
-      .exits = storedExits(paths.exits()),
-      .near_share = options.near > 0 ? paths.nearShares(progress) : std::vector<Vec3>()};
+  asset::Transfer transfer{.matrix = std::move(encoded.matrix),
+                           .entries = storedEntries(paths.entries()),
+                           .exits = storedExits(paths.exits()),
+                           .near_share = options.near > 0 ? paths.nearShares(progress) : std::vector<Vec3>(),
+                           .errors = std::nullopt};
+  transfer.errors = measureErrors(paths, options, transfer.matrix, progress);
   solved.layer.tables = asset::transferTables(transfer, context.table);
   solved.layer.samples = options.exit_rays;
   solved.rays = paths.rays();

@@ -145,6 +145,7 @@ std::vector<LayerKind> makeRegistry() {
              {"texels", "vertices", "probes"},
              "where light leaves: blocks of texels, vertices, or a grid of probes with light from all sides"},
             {"size", Type::kCount, "256", {}, "exits=texels: exits along the side of a page, at most"},
+            {"rays", Type::kCount, "auto", {}, "of an exit; auto: 256, 1024, 2048, 4096 by quality"},
             {"spacing", Type::kLength, "auto", {}, "exits=probes: metres between probes"},
             {"transfer",
              Type::kChoice,

@@ -66,7 +66,8 @@ TEST(VertexExits, AFurnaceIsExact) {
   const made::Lit furnace(made::box({4, 3, 2.5f}, Vec3(rho), Vec3(0)));
   SilentProgress silent;
   const LightPaths paths(furnace.tracer, furnace.atlas, furnace.texels, small(Receivers::kVertices), silent);
-  for (const double sum : underLightOfOne(paths)) EXPECT_NEAR(sum, rho / (1 - rho), 2e-3);
+  // Shapes of groups (typical_light.h) are not even, and rays that begin near corners see few groups.
+  for (const double sum : underLightOfOne(paths)) EXPECT_NEAR(sum, rho / (1 - rho), 0.01 * rho / (1 - rho));
 }
 
 TEST(ProbeExits, AFurnaceIsExact) {

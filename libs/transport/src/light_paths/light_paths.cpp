@@ -245,8 +245,14 @@ struct LightPaths::Impl {
       if (pieces.of_side[side] != scene::kNone) of_side[side] = clusters.of[pieces.of_side[side]];
     const Members members = membersOf(of_side, clusters.size());
     entry_places = placesOn(surface, sides, weights, members, options.entry_samples, options.seed);
-    if (options.transfer == TransferBy::kWalks)
-      walk_starts = startsOnPatches(surface, sides, members, options.walks, options.walk_seed);
+    if (options.transfer == TransferBy::kWalks) {
+      std::vector<float> lit(sides.size(), 0.0f);
+      for (std::size_t side = 0; side < lit.size(); ++side)
+        if (pieces.of_side[side] != scene::kNone)
+          for (const EntryShare& s : piece_entries.of(pieces.of_side[side]))
+            lit[side] = s.value * sides.area(side);
+      walk_starts = startsOnPatches(surface, sides, lit, members, options.walks, options.walk_seed);
+    }
     entries.samples_each = options.entry_samples;
     for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
     entries.area.assign(clusters.size(), 0.0f);
@@ -331,11 +337,8 @@ struct LightPaths::Impl {
 
   /// What exits see, one thread's.
   struct Look {
-    explicit Look(const Impl& impl)
-        : of(impl),
-          views(impl.exits.rows_each),
-          blocks(impl.exit_scene),
-          points(impl.exit_scene, impl.points) {}
+    Look(const Impl& impl, const ExitScene& scene)
+        : of(impl), views(impl.exits.rows_each), blocks(scene), points(scene, impl.points) {}
     void at(std::size_t exit) {
       if (of.options.receivers == Receivers::kTexels) {
         blocks.look(of.gathered_from[exit], views[0]);
@@ -362,7 +365,7 @@ struct LightPaths::Impl {
                 columns, out.subspan(r * 3 * columns, 3 * columns));
       return;
     }
-    Look look(*this);
+    Look look(*this, exit_scene);
     std::vector<Weight> weights;
     std::vector<std::size_t> begins(1, 0);
     for (std::size_t r = 0; r < rows; ++r) {
@@ -458,7 +461,9 @@ struct LightPaths::Impl {
     return result;
   }
 
-  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by, Progress& progress) const {
+  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by,
+                                     std::span<const std::uint32_t> which, GatherRays rays,
+                                     Progress& progress) const {
     std::vector<Vec3> on_piece;  // [lights][pieces]
     if (by == LitBy::kEntries) {
       const std::vector<Vec3> on_entry = lightOn(lights, entry_places, options.entry_samples, progress);
@@ -490,15 +495,17 @@ struct LightPaths::Impl {
               }
         },
         kResidual, progress);
-    const std::size_t each = exits.rows_each, rows = exits.size() * each;
+    const std::size_t each = exits.rows_each, rows = which.size() * each;
+    ExitScene scene = exit_scene;
+    if (rays == GatherRays::kOther) scene.seed += 0x6f74686572u;
     std::vector<Irradiance> result(lights.size() * rows);
-    const Stage stage(progress, "exits", exits.size());
+    const Stage stage(progress, "exits", which.size());
     parallelFor(
-        exits.size(), kExitGrain,
+        which.size(), kExitGrain,
         [&](std::size_t begin, std::size_t end) {
-          Look look(*this);
+          Look look(*this, scene);
           for (std::size_t x = begin * each; x < end * each; ++x) {
-            if (x % each == 0) look.at(x / each);
+            if (x % each == 0) look.at(which[x / each]);
             const ExitView& view = look.views[x % each];
             for (std::size_t block = 0; block < of_lights.blocks(); ++block) {
               const auto sum = gather(of_lights, block, view.reflected);
@@ -584,8 +591,9 @@ std::vector<float> LightPaths::entryIrradiance(std::span<const Light> lights, Pr
 }
 
 std::vector<Irradiance> LightPaths::irradiance(std::span<const Light> lights, LitBy by,
+                                               std::span<const std::uint32_t> which, GatherRays rays,
                                                Progress& progress) const {
-  return impl_->irradiance(lights, by, progress);
+  return impl_->irradiance(lights, by, which, rays, progress);
 }
 
 }  // namespace relume::transport

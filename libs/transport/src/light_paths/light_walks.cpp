@@ -61,21 +61,22 @@ ExitPlace placeOn(const SurfaceScene& scene, const Patches& exits, std::size_t e
 
 }  // namespace
 
-std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides, const Members& groups,
-                                       std::uint32_t walks, std::uint64_t seed) {
+std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides,
+                                       std::span<const float> lit, const Members& groups, std::uint32_t walks,
+                                       std::uint64_t seed) {
   std::vector<WalkStart> starts;
   for (std::uint32_t g = 0; g + 1 < groups.first.size(); ++g) {
     const auto members = groups.of(g);
     double area = 0;
-    for (const std::uint32_t side : members) area += static_cast<double>(sides.area(side));
+    for (const std::uint32_t side : members) area += static_cast<double>(lit[side]);
     const std::uint32_t stream = streamOf(seed, g, kWalkDimensions);
     std::size_t at = 0;
     double so_far = 0;
     for (std::uint32_t w = 0; w < walks; ++w) {
       const Vec2 u = sobol2(w, stream), v = sobol2(w, hashCombine(stream, 1));
       const double target = (w + static_cast<double>(v.x)) / walks * area;
-      while (at + 1 < members.size() && so_far + static_cast<double>(sides.area(members[at])) <= target)
-        so_far += static_cast<double>(sides.area(members[at++]));
+      while (at + 1 < members.size() && so_far + static_cast<double>(lit[members[at]]) <= target)
+        so_far += static_cast<double>(lit[members[at++]]);
       const std::uint32_t side = members[at];
       starts.push_back({g, side, footprintPosition(scene.texels, scene.texels.points[sides.point(side)], u),
                         sides.geometricNormal(side), static_cast<float>(area / walks), 1});

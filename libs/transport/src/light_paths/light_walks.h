@@ -43,9 +43,11 @@ struct WalkScene {
   const MeanReflectance& reflectance;
 };
 
-/// `walks` walks of each group of sides, which begin all over it: sides by their area, one walk each.
-std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides, const Members& groups,
-                                       std::uint32_t walks, std::uint64_t seed);
+/// `walks` walks of each group of sides, which begin all over it. lit: by side, what of a unit of irradiance
+/// on the group falls there, m^2.
+std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides,
+                                       std::span<const float> lit, const Members& groups, std::uint32_t walks,
+                                       std::uint64_t seed);
 
 /// The side of a texel where a ray ends; scene::kNone: none.
 std::uint32_t sideWhere(const SurfaceScene& scene, const Sides& sides, const trace::Ray& ray,

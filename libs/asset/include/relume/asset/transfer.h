@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "relume/asset/asset.h"
@@ -60,6 +61,14 @@ struct Exits {
 /// the texel is. The file keeps shares to 1 / 510.
 using NearShares = std::vector<Vec3>;  ///< shape: [texels of the atlas table], or empty: nothing is left out
 
+/// What the bake found of its own errors, under random lamps of its own that keep an entry's width from all
+/// surfaces: roots of summed squares at exits over that of the light.
+struct TransferErrors {
+  float entries = 0;   ///< of taking irradiance at entries instead of everywhere
+  float transfer = 0;  ///< noise of the transfer
+  float encoding = 0;  ///< of the stored matrix
+};
+
 /// Irradiance of exit x = sum over entries e of matrix[x][e] weight[e] mean over e's points of their direct
 /// irradiance. Indirect light alone: the direct light at the exit is not in it.
 struct Transfer {
@@ -67,6 +76,7 @@ struct Transfer {
   Entries entries;
   Exits exits;
   NearShares near_share;
+  std::optional<TransferErrors> errors;
 
   /// Throws Error kCorruptAsset, naming `layer`, unless the parts fit each other and `atlas`, numbers are
   /// finite, areas and weights not negative, normals of unit length, and every block of texels lies in one

@@ -15,6 +15,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
@@ -140,6 +141,12 @@ enum class LitBy : std::uint8_t {
   kElements,  ///< irradiance on each small piece of surface by rays of its own: no entries
 };
 
+/// Which rays gather in LightPaths::irradiance.
+enum class GatherRays : std::uint8_t {
+  kSame,   ///< those of rows()
+  kOther,  ///< as many others: the difference tells of their noise
+};
+
 class LightPaths {
  public:
   /// Places entries and exits and solves what elements send out. Keeps references. Bits do not depend on the
@@ -179,7 +186,15 @@ class LightPaths {
 
   /// Indirect irradiance at exits, colours of lights included, by the same gather rays as rows(): what parts
   /// the error of entries from that of all else. Shape: [lights][exits * rows_each].
-  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by, Progress& progress) const;
+  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by, Progress& progress) const {
+    std::vector<std::uint32_t> all(exits().size());
+    std::iota(all.begin(), all.end(), 0u);
+    return irradiance(lights, by, all, GatherRays::kSame, progress);
+  }
+  /// The same at some exits: shape [lights][which.size() * rows_each].
+  std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by,
+                                     std::span<const std::uint32_t> which, GatherRays rays,
+                                     Progress& progress) const;
 
  private:
   struct Impl;
