@@ -133,7 +133,7 @@ Digest keyOf(const LightPathOptions& o, const Coding& c) {
   Hasher hasher;
   for (const Box3& box : o.light_boxes) hasher.add(box.lo).add(box.hi);
   return hasher
-      .add(std::string_view("lightpath 3"))  // raise when results change
+      .add(std::string_view("lightpath 4"))  // raise when results change
       .add(o.entries)
       .add(o.placement)
       .add(o.test_points)
