@@ -17,7 +17,8 @@ using namespace relume::scenes;
 
 constexpr const char* kUsage =
     "usage: make_scenes OUT_DIR [--scene NAME] [--detail N]\n"
-    "  --scene NAME  cornell, hall, temple, car, rooms, crossing, lampshade or furniture; default: all\n"
+    "  --scene NAME  cornell, hall, halls, temple, car, rooms, crossing, lampshade or furniture; default: "
+    "all\n"
     "  --detail N    tessellation, 1 to 16; default 2. make_scenes . --scene temple --detail 6 has 106,000 "
     "triangles\n";
 
@@ -70,7 +71,7 @@ void run(const Options& o) {
   }
   if (!found)
     throw Error(ErrorCode::kUsage, "--scene " + o.scene, "is not one of the scenes",
-                "cornell, hall, temple, car, rooms, crossing, lampshade, furniture");
+                "cornell, hall, halls, temple, car, rooms, crossing, lampshade, furniture");
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ inline constexpr int kLargestDetail = 16;
 GlbScene makeCornell(int detail);
 /// A castle hall of three rib-vaulted naves.
 GlbScene makeHall(int detail);
+/// Two halls and a doorway between them.
+GlbScene makeHalls(int detail);
 /// A Doric temple.
 GlbScene makeTemple(int detail);
 /// A small automobile on a turntable.
