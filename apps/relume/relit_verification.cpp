@@ -28,13 +28,14 @@ double clearanceAt(const trace::Tracer& tracer, Point p) {
   return static_cast<double>(nearest);
 }
 
-/// In free space, as the lights that the encoder was trained with.
+/// Where the bake takes lamps to be: in the author's boxes, or in free space.
 std::vector<LampAgreement> chooseLamps(const trace::Tracer& tracer, std::uint32_t count,
                                        const transport::LightPlaces& where, std::uint64_t seed,
                                        Progress& progress) {
-  const Box3 bounds = tracer.scene().bounds();
+  std::vector<Box3> boxes = tracer.scene().light_boxes;
+  if (boxes.empty()) boxes.push_back(tracer.scene().bounds());
   std::vector<LampAgreement> lamps;
-  for (const Light& lamp : transport::findLights(tracer, {&bounds, 1}, count, where, seed, progress))
+  for (const Light& lamp : transport::findLights(tracer, boxes, count, where, seed, progress))
     lamps.push_back({lamp, clearanceAt(tracer, lamp.position)});
   return lamps;
 }
