@@ -108,6 +108,13 @@ TEST(ProbeExits, StandInTheAir) {
   }
 }
 
+/// Path tracing of the room under these lights alone.
+Reference litBy(made::Lit& room, const LightSet& lights) {
+  for (scene::Material& m : room.scene.materials) m.emission = Vec3(0);
+  room.scene.lights = lights;
+  return Reference(room.scene);
+}
+
 /// Indirect irradiance at exits beside path tracing, relative to its mean.
 TEST(ProbeExits, AgreeWithTheReference) {
   made::Lit room(made::colouredRoom(false), 96);
@@ -119,9 +126,7 @@ TEST(ProbeExits, AgreeWithTheReference) {
   lamp.position = {1.2f, 0.7f, 1.1f};
   const LightSet lights = {lamp};
   const std::vector<Irradiance> c = paths.irradiance(lights, LitBy::kEntries, silent);
-  for (scene::Material& m : room.scene.materials) m.emission = Vec3(0);
-  room.scene.lights = lights;
-  const Reference reference(room.scene);
+  const Reference reference = litBy(room, lights);
   std::vector<Receiver> receivers;
   for (const Exit& e : paths.exits().all)
     for (const Direction n : {Direction(1, 0, 0), Direction(-1, 0, 0), Direction(0, 0.6f, 0.8f)})
@@ -160,9 +165,7 @@ TEST(VertexExits, AgreeWithTheReferenceInsideAWall) {
   lamp.position = {1.2f, 0.7f, 1.3f};
   const LightSet lights = {lamp};
   const std::vector<Irradiance> got = paths.irradiance(lights, LitBy::kElements, silent);
-  for (scene::Material& m : room.scene.materials) m.emission = Vec3(0);
-  room.scene.lights = lights;
-  const Reference reference(room.scene);
+  const Reference reference = litBy(room, lights);
   std::vector<Receiver> receivers;
   std::vector<std::size_t> which;
   for (std::size_t x = 0; x < paths.exits().size(); ++x) {

@@ -240,10 +240,7 @@ struct LightPaths::Impl {
 
   void shootAtPieces(Progress& progress) {
     // What of a piece can be lit: the share of a unit of light on one point of it.
-    std::vector<double> area(pieces.size(), 0.0);
-    for (std::size_t side = 0; side < sides.size(); ++side)
-      if (pieces.of_side[side] != scene::kNone)
-        area[pieces.of_side[side]] += static_cast<double>(sides.area(side));
+    const std::vector<float> area = areasOf(sides, pieces);
     std::vector<EntryShare> shares;
     for (const ShotEntry& e : shootEntries(tracer, testRays(progress), options.seed, progress)) {
       const float length = glm::length(e.position - e.from);
@@ -252,8 +249,7 @@ struct LightPaths::Impl {
                           piece = side == scene::kNone ? side : pieces.of_side[side];
       if (piece == scene::kNone || !(area[piece] > 0)) continue;
       const auto entry = static_cast<std::uint32_t>(entries.size());
-      shares.push_back(
-          {piece, entry, static_cast<float>(1.0 / (static_cast<double>(e.density) * area[piece]))});
+      shares.push_back({piece, entry, 1.0f / (e.density * area[piece])});
       walk_starts.push_back({entry, side, e.position, e.normal, 1.0f / e.density, options.walks});
       const Normal shading = sides.shadingNormal(side);
       entry_places.push_back({e.position, shading, e.normal});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "light_paths/strata.h"
 #include "relume/core/frame.h"
 #include "relume/core/parallel.h"
 #include "relume/core/quantity.h"
@@ -50,13 +51,7 @@ ExitPlace placeOn(const SurfaceScene& scene, const Patches& exits, std::size_t e
   while (k + 1 < members.size() && left >= static_cast<double>(scene.texels.points[members[k]].area))
     left -= static_cast<double>(scene.texels.points[members[k++]].area);
   const atlas::SurfacePoint& point = scene.texels.points[members[k]];
-  const auto seen = scene.exposure.places(members[k]);
-  const Point at =
-      seen.empty()
-          ? footprintPosition(scene.texels, point, u)
-          : seen[std::min(static_cast<std::size_t>(u.x * static_cast<float>(seen.size())), seen.size() - 1)]
-                .position;
-  return {at, point.shading_normal, point.geometric_normal};
+  return {scene.exposure.position(members[k], u), point.shading_normal, point.geometric_normal};
 }
 
 }  // namespace
@@ -66,21 +61,14 @@ std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& s
                                        std::uint64_t seed) {
   std::vector<WalkStart> starts;
   for (std::uint32_t g = 0; g + 1 < groups.first.size(); ++g) {
-    const auto members = groups.of(g);
     double area = 0;
-    for (const std::uint32_t side : members) area += static_cast<double>(lit[side]);
-    const std::uint32_t stream = streamOf(seed, g, kWalkDimensions);
-    std::size_t at = 0;
-    double so_far = 0;
-    for (std::uint32_t w = 0; w < walks; ++w) {
-      const Vec2 u = sobol2(w, stream), v = sobol2(w, hashCombine(stream, 1));
-      const double target = (w + static_cast<double>(v.x)) / walks * area;
-      while (at + 1 < members.size() && so_far + static_cast<double>(lit[members[at]]) <= target)
-        so_far += static_cast<double>(lit[members[at++]]);
-      const std::uint32_t side = members[at];
-      starts.push_back({g, side, footprintPosition(scene.texels, scene.texels.points[sides.point(side)], u),
-                        sides.geometricNormal(side), static_cast<float>(area / walks), 1});
-    }
+    for (const std::uint32_t side : groups.of(g)) area += static_cast<double>(lit[side]);
+    forEachStratum(groups.of(g), lit, walks, streamOf(seed, g, kWalkDimensions),
+                   [&](std::uint32_t, std::uint32_t side, Vec2 u) {
+                     starts.push_back(
+                         {g, side, footprintPosition(scene.texels, scene.texels.points[sides.point(side)], u),
+                          sides.geometricNormal(side), static_cast<float>(area / walks), 1});
+                   });
   }
   return starts;
 }

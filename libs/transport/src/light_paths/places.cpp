@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light_paths/strata.h"
 #include "morton.h"
 #include "relume/core/frame.h"
 #include "relume/core/parallel.h"
@@ -43,11 +44,8 @@ std::vector<std::uint32_t> alongCurve(const atlas::Texels& texels, const Sides& 
 
 Point positionOn(const SurfaceScene& scene, const Sides& sides, std::uint32_t side, Vec2 u) {
   const std::uint32_t point = sides.point(side);
-  std::span<const atlas::SubSample> exposed;
-  if (!sides.isBack(side)) exposed = scene.exposure.places(point);
-  if (exposed.empty()) return footprintPosition(scene.texels, scene.texels.points[point], u);
-  const auto count = static_cast<float>(exposed.size());
-  return exposed[std::min(static_cast<std::size_t>(u.x * count), exposed.size() - 1)].position;
+  return sides.isBack(side) ? footprintPosition(scene.texels, scene.texels.points[point], u)
+                            : scene.exposure.position(point, u);
 }
 
 }  // namespace
@@ -59,19 +57,11 @@ std::vector<Place> placesOn(const SurfaceScene& scene, const Sides& sides, std::
   parallelFor(count, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       const std::vector<std::uint32_t> order = alongCurve(scene.texels, sides, groups.of(g));
-      double all = 0, so_far = 0;
-      for (const std::uint32_t side : order) all += static_cast<double>(weight[side]);
-      std::size_t at = 0;
-      const std::uint32_t stream = streamOf(seed, static_cast<std::uint32_t>(g), 0);
-      for (std::uint32_t k = 0; k < each; ++k) {
-        const Vec2 u = sobol2(k, stream), v = sobol2(k, hashCombine(stream, 1));
-        const double target = (k + static_cast<double>(v.x)) / each * all;
-        while (at + 1 < order.size() && so_far + static_cast<double>(weight[order[at]]) <= target)
-          so_far += static_cast<double>(weight[order[at++]]);
-        const std::uint32_t side = order[at];
-        places[g * each + k] = {positionOn(scene, sides, side, u), sides.shadingNormal(side),
-                                sides.geometricNormal(side)};
-      }
+      forEachStratum(order, weight, each, streamOf(seed, static_cast<std::uint32_t>(g), 0),
+                     [&](std::uint32_t k, std::uint32_t side, Vec2 u) {
+                       places[g * each + k] = {positionOn(scene, sides, side, u), sides.shadingNormal(side),
+                                               sides.geometricNormal(side)};
+                     });
     }
   });
   return places;

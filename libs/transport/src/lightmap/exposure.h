@@ -3,6 +3,7 @@
 // may stand in its footprint: what they cover, and what lies on their far side, is another place, which would
 // darken it or light it through a wall.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,14 @@ class Exposure {
     const std::uint32_t s = state_[point];
     if (s >= kHidden) return {};
     return parts_[s].far_counts ? farOf(parts_[s]) : nearOf(parts_[s]);
+  }
+
+  /// One of these places, or of the whole footprint, for u in [0, 1)^2: equal shares for equal shares.
+  Point position(std::uint32_t point, Vec2 u) const {
+    const auto seen = places(point);
+    if (seen.empty()) return atlas::footprintPosition(texels_, texels_.points[point], u);
+    const auto count = static_cast<float>(seen.size());
+    return seen[std::min(static_cast<std::size_t>(u.x * count), seen.size() - 1)].position;
   }
 
   /// A wall parts the point's footprint, and a neighbour answers for the smaller side.
