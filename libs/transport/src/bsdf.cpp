@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "relume/transport/bsdf.h"
+#include "relume/basis/ggx.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ggx.h"
 #include "relume/core/sampling.h"
 
 namespace relume::transport {
+namespace ggx = basis::ggx;
 namespace {
 
 using ggx::kDielectric;

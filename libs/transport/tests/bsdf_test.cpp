@@ -2,6 +2,7 @@
 // The material model: Lambert exactly, reciprocity of the GGX lobe, samples against the density that they
 // claim (chi-square), albedo by two ways, the white furnace.
 #include "relume/transport/bsdf.h"
+#include "relume/basis/ggx.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,10 +10,10 @@
 #include <cmath>
 #include <vector>
 
-#include "ggx.h"
 #include "relume/core/sampling.h"
 
 namespace relume::transport {
+namespace ggx = basis::ggx;
 namespace {
 
 scene::Surface surfaceOf(Vec3 base, float metallic, float roughness) {

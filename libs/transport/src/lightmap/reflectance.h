@@ -4,11 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "ggx.h"
 #include "relume/atlas/texels.h"
+#include "relume/basis/ggx.h"
 #include "relume/transport/reference.h"
 
 namespace relume::transport {
+namespace ggx = basis::ggx;
 
 /// Of light that comes at the angle of cosine c the share
 ///   diffuse + scale * reflected(c).scale + bias * reflected(c).bias

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The GGX microfacet lobe in the local frame of the surface (normal +z), without Fresnel's factor, and how
-// much light it reflects. Sources: relume/transport/bsdf.h.
+// much light it reflects. Based on:
+//   [glTF] Khronos. glTF 2.0, appendix B: F0 = 0.04 or base colour, alpha = roughness^2, Schlick.
+//   [Heitz14] Heitz. Understanding the Masking-Shadowing Function. JCGT 3(2), 2014: height-correlated Smith.
+//   [DB23] Dupuy, Benyoub. Sampling Visible GGX Normals with Spherical Caps. CGF 42(8), 2023.
+//   [Tur19] Turquin. Practical Multiple Scattering Compensation for Microfacet Models. 2019: (16).
 #pragma once
 #include "relume/core/vec.h"
 
-namespace relume::transport::ggx {
+namespace relume::basis::ggx {
 
 inline constexpr float kLeastAlpha = 1e-3f;  ///< a mirror is a very sharp lobe
 inline constexpr float kDielectric = 0.04f;  ///< F0 of index 1.5 ([glTF])
@@ -29,4 +33,4 @@ struct Reflected {
 };
 Reflected reflected(float cos_o, float alpha);
 
-}  // namespace relume::transport::ggx
+}  // namespace relume::basis::ggx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ggx.h"
+#include "relume/basis/ggx.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "relume/core/sampling.h"
 
-namespace relume::transport::ggx {
+namespace relume::basis::ggx {
 
 float distribution(Vec3 h, float alpha) {
   // (n.h)^2 (a^2 - 1) + 1 as a^2 cos^2 + sin^2: sharp lobes keep their digits.
@@ -92,4 +92,4 @@ Reflected reflected(float cos_o, float alpha) {
   return {mix(&Reflected::scale), mix(&Reflected::bias)};
 }
 
-}  // namespace relume::transport::ggx
+}  // namespace relume::basis::ggx
