@@ -15,6 +15,7 @@
 #include "relume/core/file.h"
 #include "relume/image/colour.h"
 #include "relume/image/io.h"
+#include "relume/picture/baked_directions.h"
 #include "relume/picture/picture.h"
 
 namespace relume::app {
@@ -27,7 +28,7 @@ constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit, 
 
 struct RenderOptions {
   std::string input, output, mode, view, layer, lights, ambient, background = "0.05", tone = "auto";
-  std::string eye, target, size = "960x540", renderer = "cpu", materials = "full";
+  std::string eye, target, size = "960x540", renderer = "cpu", materials = "full", gloss = "ggx";
   std::vector<std::string> gains;
   std::optional<float> exposure, error;
   std::optional<int> spp, bounces;
@@ -123,15 +124,28 @@ void relightForPicture(const RenderOptions& options, picture::PictureOptions& pi
     picture.lights.clear();
 }
 
+/// Whether relit light is that of a layer that knows all light by direction already.
+bool showsOwnLight(const Opened& opened, const std::string& layer) {
+  if (!opened.asset) return false;
+  if (!layer.empty()) return picture::isDirectional(opened.asset->layer(layer));
+  const auto& layers = opened.asset->layers;
+  return std::none_of(layers.begin(), layers.end(), picture::isTransfer) &&
+         std::any_of(layers.begin(), layers.end(), picture::isDirectional);
+}
+
 void renderPicture(const RenderOptions& options, Progress& progress) {
   requireWritable(options.output);
   if (options.mode == "reference" || options.mode == "direct") return renderReference(options, progress);
-  const auto opened = open(options.input);
+  const auto opened = open(options.input, {.normal_maps = true});
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const IVec2 size = parseExtent(options.size, "--size");
   picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp.value_or(16)};
   picture.view = options.mode == "relit" ? View::kRelit : viewOf(options.view, *opened);
+  if (options.mode == "relit" && showsOwnLight(*opened, options.layer)) picture.view = View::kLightmap;
   picture.layer = options.layer;
+  picture.gloss = options.gloss == "none"    ? picture::Gloss::kNone
+                  : options.gloss == "phong" ? picture::Gloss::kPhong
+                                             : picture::Gloss::kGgx;
   picture.lights = chooseLights(options.lights, opened->scene);
   // Without a word, an ambient light that shows the obscurance: alone it makes white surfaces white, beside
   // lamps it is faint.
@@ -212,6 +226,11 @@ void addRender(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "with --mode: of the random numbers")
       ->needs(mode)
+      ->capture_default_str();
+  command
+      ->add_option("--gloss", options->gloss,
+                   "of a lightmap with a directional receiver: ggx as materials say, phong, or none: diffuse")
+      ->check(CLI::IsMember({"ggx", "phong", "none"}))
       ->capture_default_str();
   command->add_option("--gain", options->gains,
                       "of lightgroups, repeatable: GROUP=NUMBER or GROUP=R,G,B; without it, lamps as baked");

@@ -119,8 +119,25 @@ class Lightmap(test_cli.CliTest):
         self.bake("--layer", "ao", output=self.folder / "ao.glb")
         self.assertIn("lightmap", relume("render", self.folder / "ao.glb", "-o", self.folder / "no.png", "--view", "lightmap", expect=1).stderr)
 
+    def test_directional_receivers(self):
+        for receiver, packing, planes in (("sh2", "half", 5), ("ahd", "half", 4), ("hbasis4", "compact", 5), ("directions:8", "compact", 10)):
+            self.bake("--layer", f"lightmap:receiver={receiver},packing={packing}", "--samples", 64)
+            layer = json.loads(relume("inspect", self.baked, "--json").stdout)["layers"][0]
+            self.assertEqual(len(layer["planes"]), planes, receiver)
+            relume("export", self.baked, "--layer", "lightmap", "-o", self.folder / receiver.replace(":", ""))
+            self.assertEqual(len(list((self.folder / receiver.replace(":", "")).glob("*.exr"))), planes)
+            # Diffuse surfaces without normal maps: close to the truth, and gloss adds a little.
+            view = ["--size", "64x48", "--eye", "1,2,5", "--target", "1,0,0"]
+            relume("render", self.baked, "-o", self.folder / "plain.exr", *view, "--gloss", "none")
+            relume("render", self.baked, "-o", self.folder / "glossy.exr", *view, "--mode", "relit")
+            relume("render", self.baked, "-o", self.folder / "truth.exr", *view, "--mode", "reference", "--spp", 256, "--materials", "lambert")
+            difference = json.loads(relume("compare", self.folder / "plain.exr", self.folder / "truth.exr", "--json").stdout)
+            self.assertLess(difference["relative"], 0.2, receiver)
+            self.assertNotEqual((self.folder / "plain.exr").read_bytes(), (self.folder / "glossy.exr").read_bytes())
+
     def test_wrong_usage(self):
-        for layer in ("lightmap:bounces=1.5", "lightmap:bounces=-1", "lightmap:part=some", "lightmap:distance=3"):
+        for layer in ("lightmap:bounces=1.5", "lightmap:bounces=-1", "lightmap:part=some", "lightmap:distance=3", "lightmap:receiver=sh5", "lightmap:receiver=directions:3",
+                      "lightmap:receiver=sh3,solver=path"):
             done = self.bake("--layer", layer, expect=2)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.bake("--layer", "ao", "--quality", "draft")

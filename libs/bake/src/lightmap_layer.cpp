@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "directional_planes.h"
 #include "relume/core/check.h"
+#include "relume/core/error.h"
 #include "relume/scene/light_groups.h"
 #include "relume/transport/lightmap.h"
 #include "relume/transport/occlusion.h"
@@ -14,7 +16,7 @@ namespace {
 
 using transport::LightmapOptions;
 
-// The row of a texel.
+// The row of a texel; behind it what a directional receiver sums up.
 constexpr std::size_t kErrorAt = 3, kBackAt = 4, kRow = 5;
 
 transport::RadiosityOptions radiosityOf(const Parameters& parameters) {
@@ -100,6 +102,7 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
         .add(o.radiosity.rays)
         .add(o.radiosity.cube_resolution)
         .add(o.radiosity.residual);
+  if (o.receiver) hasher.add("receiver 1").add(std::string_view(o.receiver->name()));  // raise likewise
   addLights(scene, hasher);
   for (const scene::Material& m : scene.materials) {
     hasher.add(m.normal_scale);
@@ -118,49 +121,73 @@ std::uint64_t solveRows(transport::LightmapSolver& solver, std::span<const std::
     for (int c = 0; c < 3; ++c) out[c] = result.value[i].rgb[c];
     out[kErrorAt] = result.error[i];
     out[kBackAt] = result.back_share[i];
+    const std::size_t sums = result.sums.size() / which.size();
+    std::copy_n(result.sums.data() + i * sums, sums, out + kRow);
   }
   return result.rays;
 }
 
 PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const float> rows,
-                      std::size_t stride, std::size_t at, const std::string& name) {
-  const std::size_t points = texels.points.size();
+                      std::size_t stride, std::size_t at, const std::string& name,
+                      const Receiver& receiver = {}) {
+  const std::size_t points = texels.points.size(), sums = receiver.sums(), channels = 3 + sums;
   RELUME_CHECK_EQ(rows.size(), points * stride);
   PointLayer layer;
-  PointPlane value{.name = name, .channels = 3, .values = std::vector<float>(points * 3)};
+  std::vector<float> values(points * channels);
   layer.error.resize(points), layer.valid.resize(points);
   for (std::size_t i = 0; i < points; ++i) {
     const float* row = rows.data() + i * stride + at;
-    std::copy_n(row, 3, &value.values[i * 3]);
+    std::copy_n(row, 3, &values[i * channels]);
+    std::copy_n(row + kRow, sums, &values[i * channels] + 3);
     layer.error[i] = row[kErrorAt];
     layer.valid[i] = row[kBackAt] <= transport::kBuriedShare;
   }
   if (filter) {
+    // Sums are as linear in the light as irradiance is: what may be mixed of one may be mixed of the other.
     std::vector<float> left(points);
-    transport::filterTexels(texels, layer.error, layer.valid, 3, value.values, left);
+    transport::filterTexels(texels, layer.error, layer.valid, static_cast<int>(channels), values, left,
+                            {.guides = 3});
     layer.error = std::move(left);
   }
+  if (sums == 0) {
+    layer.planes.push_back({.name = name, .channels = 3, .values = std::move(values)});
+    return layer;
+  }
+  PointPlane value{.name = name, .channels = 3, .values = std::vector<float>(points * 3)};
+  std::vector<float> directional(points * sums);
+  for (std::size_t i = 0; i < points; ++i) {
+    std::copy_n(&values[i * channels], 3, &value.values[i * 3]);
+    std::copy_n(&values[i * channels] + 3, sums, &directional[i * sums]);
+  }
   layer.planes.push_back(std::move(value));
+  for (PointPlane& plane : directionalPlanes(receiver, texels, directional))
+    layer.planes.push_back(std::move(plane));
   return layer;
 }
 
 }  // namespace
 
 LayerJob prepareLightmap(const LayerContext& context, const Parameters& parameters) {
-  const LightmapOptions options = optionsOf(context, parameters);
+  LightmapOptions options = optionsOf(context, parameters);
+  const Receiver receiver = receiverOf(parameters);
+  options.receiver = receiver.basis;
+  if (receiver.basis && options.method == transport::LightmapMethod::kPath)
+    throw Error(ErrorCode::kUsage, "--layer lightmap", "solver=path knows irradiance alone",
+                "leave receiver= away, or take solver=gather");
+  const std::size_t row = kRow + receiver.sums();
   LayerJob job;
-  job.solver.row = static_cast<int>(kRow);
+  job.solver.row = static_cast<int>(row);
   job.solver.key = keyOf(options, context.tracer.scene());
   const auto solver =
       std::make_shared<transport::LightmapSolver>(context.tracer, context.atlas, context.texels, options);
-  job.solver.solve = [solver](std::span<const std::uint32_t> which, std::span<float> rows,
-                              Progress& progress) {
-    return solveRows(*solver, which, rows, kRow, 0, progress);
+  job.solver.solve = [solver, row](std::span<const std::uint32_t> which, std::span<float> rows,
+                                   Progress& progress) {
+    return solveRows(*solver, which, rows, row, 0, progress);
   };
   const atlas::Texels& texels = context.texels;
   const bool filter = context.quality.filter;
-  job.finish = [&texels, filter](std::span<const float> rows) {
-    return finishRows(texels, filter, rows, kRow, 0, "value");
+  job.finish = [&texels, filter, row, receiver](std::span<const float> rows) {
+    return finishRows(texels, filter, rows, row, 0, "value", receiver);
   };
   return job;
 }

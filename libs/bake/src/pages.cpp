@@ -29,6 +29,10 @@ asset::Plane finishPlane(const atlas::Texels& texels, std::span<const atlas::Sea
                                                                         : asset::Storage::kFloat32;
   if (plane.unit_interval)
     for (float& v : out.values) v = std::clamp(v, 0.0f, 1.0f);
+  if (plane.unorm8) {
+    for (float& v : out.values) v = std::clamp(v, plane.lo, plane.hi);
+    out.storage = asset::Storage::kUnorm8, out.lo = plane.lo, out.hi = plane.hi;
+  }
   if (report) report->seams_after = seamError(seams, plane.channels, out.values);
   if (plane.direction) {
     for (std::size_t i = 0; i + 2 < out.values.size(); i += 3) {

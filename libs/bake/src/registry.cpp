@@ -10,6 +10,7 @@
 #include "lightmap_layer.h"
 #include "lightpath_layer.h"
 #include "occlusion_layers.h"
+#include "relume/basis/basis.h"
 #include "relume/core/error.h"
 
 namespace relume::bake {
@@ -46,6 +47,17 @@ const ParameterSpec kMaterials{
     {"full", "lambert"},
     "lambert: diffuse reflection alone; full: glossy lobes too, with their energy"};
 
+const ParameterSpec kPacking{"packing",
+                             Type::kChoice,
+                             "half",
+                             {"half", "compact"},
+                             "of directional receivers: half floats, or 8 bit beside a scale"};
+const ParameterSpec kWindow{"window",
+                            Type::kFlag,
+                            "false",
+                            {},
+                            "sh and hbasis: fade high bands out where irradiance would be negative"};
+
 std::vector<LayerKind> makeRegistry() {
   return {
       {.name = "ao",
@@ -79,7 +91,7 @@ std::vector<LayerKind> makeRegistry() {
        .summary = "irradiance from the scene's own lights, direct and reflected",
        .emitters = "the scene's lights, emissive surfaces, environment",
        .transport = "path-traced",
-       .receivers = "texels, RGB irradiance",
+       .receivers = "texels, RGB irradiance or a directional basis",
        .codec = "none",
        .parameters =
            {{"solver",
@@ -87,6 +99,15 @@ std::vector<LayerKind> makeRegistry() {
              "gather",
              {"gather", "radiosity", "path"},
              "radiosity: light from patches; path: unbiased random walks, slow, to judge others by"},
+            {"receiver",
+             Type::kBasis,
+             "irradiance",
+             {},
+             "what a texel holds, for normal maps and gloss: irradiance, sh2 to sh4, hbasis4, hbasis6, hl2, "
+             "ahd, "
+             "dominant, farcry, sg5 to sg9, cube, dice, directions:n"},
+            kPacking,
+            kWindow,
             kPart,
             kBounces,
             kMaterials,
@@ -193,6 +214,12 @@ asset::Parameter parseValue(const ParameterSpec& spec, const std::string& text, 
       if (std::find(spec.choices.begin(), spec.choices.end(), text) != spec.choices.end()) return text;
       throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' is not known", text),
                   fmt::format("use one of {}", fmt::join(spec.choices, ", ")));
+    case Type::kBasis:
+      try {
+        return basis::makeBasis(text)->name();
+      } catch (const Error& e) {
+        throw Error(ErrorCode::kUsage, subject, fmt::format("'{}' {}", text, e.problem()), e.remedy());
+      }
     case Type::kLength:
     case Type::kCount:
     case Type::kShare:

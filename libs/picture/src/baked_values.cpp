@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "page_texels.h"
 #include "relume/core/error.h"
 
 namespace relume::picture {
@@ -37,24 +38,28 @@ const char* remedyFor(View view) {
 }
 
 /// The plane a view shows: of the named layer, or of the first that fits.
-const asset::Plane& choosePlane(const asset::Asset& asset, View view, const std::string& name,
-                                std::string_view plane_name) {
+struct Chosen {
+  const asset::Layer* layer;
+  const asset::Plane* plane;
+};
+Chosen choosePlane(const asset::Asset& asset, View view, const std::string& name,
+                   std::string_view plane_name) {
   if (!name.empty()) {
     const asset::Layer& layer = asset.layer(name);
-    if (const asset::Plane* plane = findPlane(layer, plane_name)) return *plane;
+    if (const asset::Plane* plane = findPlane(layer, plane_name)) return {&layer, plane};
     throw Error(ErrorCode::kNoSuchLayer, "layer " + name,
                 fmt::format("has no plane '{}', which the view {} shows", plane_name, picture::name(view)),
                 "name another layer or choose another view");
   }
-  const asset::Plane* found = nullptr;
+  Chosen found{nullptr, nullptr};
   const bool wants_obscurance = view == View::kObscurance || view == View::kLit;
   for (const asset::Layer& layer : asset.layers) {
     const asset::Plane* plane = findPlane(layer, plane_name);
     if (!plane || !fits(layer, view)) continue;
-    if (!found) found = plane;
-    if (!wants_obscurance || isObscurance(layer)) return *plane;
+    if (!found.layer) found = {&layer, plane};
+    if (!wants_obscurance || isObscurance(layer)) return {&layer, plane};
   }
-  if (found) return *found;
+  if (found.layer) return found;
   throw Error(ErrorCode::kNoSuchLayer, fmt::format("view {}", picture::name(view)),
               fmt::format("no layer of this bake has a plane '{}'", plane_name), remedyFor(view));
 }
@@ -96,9 +101,11 @@ BakedValues::BakedValues(const scene::Scene& scene, const asset::Asset* asset, V
                 "bake it first, or choose the view albedo or normal");
   requireMatch(scene, asset->atlas);
   if (view == View::kBentNormal)
-    bent_ = &choosePlane(*asset, view, layer, "bent");
-  else if (view != View::kCharts && view != View::kValidity)
-    value_ = &choosePlane(*asset, view, layer, "value");
+    bent_ = choosePlane(*asset, view, layer, "bent").plane;
+  else if (view != View::kCharts && view != View::kValidity) {
+    const Chosen chosen = choosePlane(*asset, view, layer, "value");
+    layer_ = chosen.layer, value_ = chosen.plane;
+  }
 
   const std::size_t texels = static_cast<std::size_t>(asset->atlas.pages) *
                              static_cast<std::size_t>(asset->atlas.width) *
@@ -126,29 +133,18 @@ std::optional<BakedValues::Place> BakedValues::locate(const scene::Hit& hit) con
   return Place{mesh.atlas_page, uv * Vec2(asset_->atlas.width, asset_->atlas.height)};
 }
 
-namespace {
-
-/// Clamps to [0, hi]; NaN becomes 0, so whatever a file says stays inside its page.
-float clampIndex(float x, int hi) { return x > 0 ? std::min(x, static_cast<float>(hi)) : 0.0f; }
-
-}  // namespace
-
 Vec3 BakedValues::bilinear(const asset::Plane& plane, const Place& place) const {
-  const int width = asset_->atlas.width, height = asset_->atlas.height;
-  const float x = clampIndex(place.texel.x - 0.5f, width - 1);
-  const float y = clampIndex(place.texel.y - 0.5f, height - 1);
-  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-  const int x1 = std::min(x0 + 1, width - 1), y1 = std::min(y0 + 1, height - 1);
-  const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
+  const Bilinear at = bilinearAt(place.texel, asset_->atlas.width, asset_->atlas.height);
+  const std::size_t page = std::size_t{place.page} * static_cast<std::size_t>(asset_->atlas.width) *
+                           static_cast<std::size_t>(asset_->atlas.height);
   const auto channels = static_cast<std::size_t>(plane.channels);
-  const auto texel = [&](int tx, int ty) {
-    const std::size_t row = static_cast<std::size_t>(place.page) * static_cast<std::size_t>(height) +
-                            static_cast<std::size_t>(ty);
-    const float* v = plane.values.data() +
-                     (row * static_cast<std::size_t>(width) + static_cast<std::size_t>(tx)) * channels;
+  const auto texel = [&](std::size_t k) {
+    const float* v = plane.values.data() + (page + at.texel[k]) * channels;
     return channels >= 3 ? Vec3(v[0], v[1], v[2]) : Vec3(v[0]);
   };
-  return glm::mix(glm::mix(texel(x0, y0), texel(x1, y0), fx), glm::mix(texel(x0, y1), texel(x1, y1), fx), fy);
+  Vec3 sum(0.0f);
+  for (std::size_t k = 0; k < 4; ++k) sum += at.weight[k] * texel(k);
+  return sum;
 }
 
 Vec3 BakedValues::value(const Place& place) const { return value_ ? bilinear(*value_, place) : Vec3(1.0f); }

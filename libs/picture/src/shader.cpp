@@ -3,6 +3,7 @@
 //   obscurance   L = k I_A W + emission                                              ([IKSZ03] eq. 4)
 //   lit          L = k ((I_A + beta sum_j E_j) W + E) + emission                     ([IKSZ03] eq. 5)
 //   lightmap     L = k E + emission, E the baked irradiance
+//   the same of directional light: E for the normal-mapped normal, and glossy lobes (glossy_surface.h)
 //   relit        L = k (E + I) + emission, I the relit indirect irradiance; indirect: L = k I
 // where E_j counts every light, turned or hidden or not (eq. 7), and k_A = k_D = k.
 // Beyond the paper: metals have no diffuse albedo and would be black, so for display they reflect all light
@@ -15,6 +16,7 @@
 #include <array>
 #include <cmath>
 
+#include "glossy_surface.h"
 #include "relume/core/check.h"
 #include "relume/image/colour.h"
 
@@ -57,6 +59,8 @@ Vec3 Shader::lit(const ShadingPoint& point, const Receiver& receiver, Irradiance
   Irradiance ambient = options_.ambient;
   const auto place = baked_.locate(point.where);
   if (options_.view == View::kLightmap) {
+    if (directions_ && place)
+      return lightFromAllSides(point, receiver, surface, *place) + surface.emission.rgb;
     direct = place ? Irradiance(baked_.value(*place)) : ambient;
     ambient = Irradiance(0.0f);
   } else if (options_.view == View::kRelit || options_.view == View::kIndirect) {
@@ -71,6 +75,25 @@ Vec3 Shader::lit(const ShadingPoint& point, const Receiver& receiver, Irradiance
     direct = Irradiance(0.0f);
   }
   return (reflected(Albedo(base), ambient + direct) + surface.emission).rgb;
+}
+
+Vec3 Shader::lightFromAllSides(const ShadingPoint& point, const Receiver& receiver,
+                               const scene::Surface& surface, const BakedValues::Place& place) const {
+  std::array<float, BakedDirections::kMost> numbers;
+  const basis::Basis& basis = directions_->basis();
+  const auto coefficients = std::span(numbers).first(basis.coefficients());
+  directions_->coefficients(place, coefficients);
+  const scene::Scene& scene = tracer_.scene();
+  const Normal own = scene::shadingNormal(scene, point.where);
+  const basis::Receiver at(own);
+  Normal normal = scene::mappedNormal(scene, point.where);
+  // Light is known on the side that the normal points to; seen from behind it is shown likewise.
+  const Direction to_viewer =
+      glm::dot(receiver.shading, own) < 0 ? glm::reflect(point.to_viewer, own) : point.to_viewer;
+  if (glm::dot(normal, to_viewer) <= 0) normal = own;
+  if (options_.gloss == Gloss::kNone)
+    return reflected(Albedo(Vec3(surface.base_colour)), basis.irradiance(at, coefficients, normal)).rgb;
+  return reflectedLight(basis, at, coefficients, surface, normal, to_viewer, options_.gloss);
 }
 
 Vec3 Shader::data(const ShadingPoint& point, const Receiver& receiver) const {

@@ -132,11 +132,12 @@ class TileFilter {
 
   void likeness(std::size_t first, std::size_t other, std::size_t count, float* weight) const {
     for (std::size_t i = 0; i < count; ++i) weight[i] = 0.0f;
-    for (std::size_t c = 0; c < channels_; ++c) {
+    const std::size_t guides = options_.guides > 0 ? static_cast<std::size_t>(options_.guides) : channels_;
+    for (std::size_t c = 0; c < guides; ++c) {
       const float *a = &value_[c * cells() + first], *b = &value_[c * cells() + other];
       for (std::size_t i = 0; i < count; ++i) weight[i] += (a[i] - b[i]) * (a[i] - b[i]);
     }
-    const float scale = options_.error_scale * options_.error_scale * static_cast<float>(channels_);
+    const float scale = options_.error_scale * options_.error_scale * static_cast<float>(guides);
     const float *a = &square_[first], *b = &square_[other];
     for (std::size_t i = 0; i < count; ++i) {
       const float allowed = scale * (a[i] + b[i]), rest = 1.0f - weight[i] / allowed;
@@ -242,6 +243,7 @@ void filterTexels(const atlas::Texels& texels, std::span<const float> error,
                   std::span<float> error_left, const FilterOptions& options) {
   const std::size_t points = texels.points.size();
   RELUME_CHECK(channels > 0 && options.radius > 0 && options.normal_power >= 0);
+  RELUME_CHECK(options.guides >= 0 && options.guides <= channels);
   RELUME_CHECK_EQ(values.size(), points * static_cast<std::size_t>(channels));
   RELUME_CHECK_EQ(error.size(), points);
   RELUME_CHECK(valid.empty() || valid.size() == points);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // "sg5" to "sg9": radiance as spherical Gaussians about fixed directions of the hemisphere, in the frame of
-// Receiver. Amplitudes: least squares over the hemisphere with none below 0. E: each Gaussian's integral with
-// the clamped cosine, by its zonal harmonics (8 bands: they are broad). Gloss: its product with a Gaussian of
-// the lobe's shape.
+// Receiver. Amplitudes: least squares over the sphere, dark below the surface, with none below 0; then scaled
+// so that E is exact on the surface as it is. E: each Gaussian's integral with the clamped cosine, by its
+// zonal harmonics (8 bands: they are broad). Gloss: its product with a Gaussian of the lobe's shape.
 //   [RTR] Akenine-Moeller, Haines, Hoffman. Real-Time Rendering, 3rd ed. Section 11.5.2, after Neubelt,
 //   Pettineo: The Order: 1886.
 #include <array>
@@ -17,8 +17,8 @@ namespace relume::basis {
 namespace {
 
 constexpr std::size_t kMostLobes = 9;
-constexpr std::size_t kQuadrature = 4096;  // directions of the hemisphere, for what lobes share
-constexpr float kSharpnessPerLobe = 0.75f;
+constexpr std::size_t kQuadrature = 8192;   // directions, for what lobes share
+constexpr float kSharpnessPerLobe = 0.75f;  // of 0.3 to 1.5, the least error under normal maps
 
 /// Directions that share the hemisphere: one up where there are many, the others in a ring or a spiral below.
 std::vector<Direction> hemisphereSet(std::size_t n) {
@@ -35,9 +35,8 @@ class GaussianBasis final : public PositiveBasis {
       : PositiveBasis("sg" + std::to_string(lobes), lobes),
         axes_(hemisphereSet(lobes)),
         sharpness_(kSharpnessPerLobe * static_cast<float>(lobes)) {
-    const double weight = 2 * M_PI / kQuadrature;
-    for (const Direction d : sphericalFibonacci(2 * kQuadrature)) {
-      if (d.z < 0) continue;
+    const double weight = 4 * M_PI / kQuadrature;
+    for (const Direction d : sphericalFibonacci(kQuadrature)) {
       std::array<double, kMostLobes> g{};
       for (std::size_t i = 0; i < lobes; ++i) g[i] = static_cast<double>(lobe(i)(d));
       for (std::size_t i = 0; i < lobes; ++i)
@@ -50,12 +49,13 @@ class GaussianBasis final : public PositiveBasis {
                   kCosineFactor[l];
   }
 
-  std::size_t sums() const override { return coefficients(); }
+  std::size_t sums() const override { return 3 * (triples() + 1); }
 
   void add(const Receiver& at, const Arrival& light, std::span<double> sums) const override {
     const Direction d = at.frame.toLocal(light.from);
     const Vec3 flux = basis::flux(light);
     for (std::size_t i = 0; i < triples(); ++i) addTriple(sums, i, flux * lobe(i)(d));
+    addTriple(sums, triples(), light.e.rgb);
   }
 
   void finish(const Receiver&, std::span<const float> sums, std::span<float> c) const override {
@@ -75,7 +75,10 @@ class GaussianBasis final : public PositiveBasis {
         }
         if (moved <= 1e-6 * largest) break;
       }
-      for (std::size_t i = 0; i < n; ++i) c[3 * i + k] = static_cast<float>(x[i]);
+      double flat = 0;
+      for (std::size_t i = 0; i < n; ++i) flat += x[i] * static_cast<double>(cosineShare(axes_[i].z));
+      const double scale = flat > 0 ? static_cast<double>(sums[3 * n + k]) / flat : 0;
+      for (std::size_t i = 0; i < n; ++i) c[3 * i + k] = static_cast<float>(x[i] * scale);
     }
   }
 
@@ -108,7 +111,7 @@ class GaussianBasis final : public PositiveBasis {
 
   std::vector<Direction> axes_;
   float sharpness_;
-  std::array<std::array<double, kMostLobes>, kMostLobes> shared_{};  // over the hemisphere
+  std::array<std::array<double, kMostLobes>, kMostLobes> shared_{};
   std::array<float, 9> zonal_{};
 };
 

@@ -70,6 +70,11 @@ std::unique_ptr<Basis> makeBasis(const std::string& name, const BasisOptions& op
   throw Error(ErrorCode::kUsage, "receiver " + name, "is not known", "use one of " + joined(basisNames()));
 }
 
+std::string Basis::planeName(const TexturePlane& plane) const {
+  const std::string own = name();
+  return own.substr(0, own.find(':')) + "-" + plane.name;
+}
+
 std::size_t Basis::bytesPerTexel(Packing packing) const {
   std::size_t bytes = 0;
   for (const TexturePlane& plane : planes(packing)) bytes += plane.bytes();

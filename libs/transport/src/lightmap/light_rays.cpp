@@ -49,7 +49,7 @@ bool LightRays::add(const GroupRays& rays, Reach reach, std::uint32_t texel, std
   packet_.direction_z[lane] = direction.z;
   packet_.t_max[lane] = t_max;
   packet_.alpha_seed[lane] = rays.alphaStream(texel) + kAlphaSeeds + sample;
-  waiting_[lane] = {texel, row, value, cosine};
+  waiting_[lane] = {texel, row, value, cosine, light.direction};
   return true;
 }
 

@@ -19,7 +19,8 @@ class LightRays {
       : tracer_(tracer), emitters_(emitters), table_(table), alone_(alone) {}
 
   /// Samples first .. first + count - 1 of the `active` texels of the group in `rays`. Calls visit(texel,
-  /// sample - first, irradiance, cosine of its angle) for what arrives; a sample may be visited twice.
+  /// sample - first, irradiance, cosine of its angle, direction) for what arrives; a sample may be visited
+  /// twice.
   template <class Visit>
   void trace(const GroupRays& rays, std::span<const std::uint32_t> active, std::uint32_t first,
              std::uint32_t count, const Visit& visit) {
@@ -45,7 +46,7 @@ class LightRays {
     const std::uint32_t hidden = blocked();
     for (std::uint32_t lane = 0; lane < filled_; ++lane) {
       const Waiting& w = waiting_[lane];
-      if (((hidden >> lane) & 1u) == 0) visit(w.texel, w.row, w.value, w.cosine);
+      if (((hidden >> lane) & 1u) == 0) visit(w.texel, w.row, w.value, w.cosine, w.direction);
     }
     traced_ += filled_;
     filled_ = 0;
@@ -61,6 +62,7 @@ class LightRays {
     std::uint32_t texel, row;
     Vec3 value;
     float cosine;
+    Direction direction;
   };
   std::array<Waiting, trace::RayPacket::kSize> waiting_;
   std::uint64_t traced_ = 0;

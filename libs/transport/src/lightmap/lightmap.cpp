@@ -12,6 +12,7 @@
 #include "error_estimate.h"
 #include "group_solving.h"
 #include "lightmap/chunk.h"
+#include "lightmap/directional_sums.h"
 #include "lightmap/end_radiance.h"
 #include "lightmap/exposure.h"
 #include "lightmap/gatherer.h"
@@ -67,6 +68,7 @@ class Estimate {
     return count_ > 0 ? unit_ * Vec3(sum_[i] / static_cast<double>(count_)) : Vec3(0.0f);
   }
   float error(std::size_t i) const { return error_[i]; }
+  std::uint32_t count() const { return count_; }
   /// Mean square of the errors.
   float squaredError() const {
     float sum = 0;
@@ -113,7 +115,9 @@ class GroupSolver {
         light_rays_(shared.tracer, shared.emitters, shared.lights, options_.part == Part::kDirect),
         walk_(shared.tracer, shared.lookup, shared.exposure, shared.emitters, shared.cache),
         near_(shared.tracer, shared.reach, shared.lookup, shared.exposure, shared.emitters, shared.cache,
-              options_.materials) {}
+              options_.materials),
+        lit_from_(options_.receiver.get()),
+        gathered_from_(options_.receiver.get()) {}
 
   std::uint64_t rays() const { return gatherer_.rays() + light_rays_.rays() + walk_.rays() + near_.rays(); }
 
@@ -122,16 +126,19 @@ class GroupSolver {
     rays_.begin(group);
     light_.begin(group.size(), 1.0f);
     gathered_.begin(group.size(), kPi);  // of cosine-weighted rays each stands for pi steradian
+    lit_from_.begin(group, shared_.texels), gathered_from_.begin(group, shared_.texels);
     backs_.clear();
     all_.resize(group.size());
     std::iota(all_.begin(), all_.end(), 0u);
     const float allowed = squaredTolerance(group);
     if (shared_.direct())
       sample(leastLights(options_), allowed, light_, [&](auto first, auto count) {
-        light_rays_.trace(rays_, all_, first, count,
-                          [&](std::uint32_t texel, std::uint32_t sample, Vec3 irradiance, float) {
-                            chunk_.add(texel, sample, irradiance);
-                          });
+        light_rays_.trace(
+            rays_, all_, first, count,
+            [&](std::uint32_t texel, std::uint32_t sample, Vec3 irradiance, float cosine, Direction from) {
+              chunk_.add(texel, sample, irradiance);
+              if (lit_from_) lit_from_.add(texel, {from, Irradiance(irradiance), cosine});
+            });
       });
     // Also for direct light alone: without a gather ray nothing tells whether a texel lies inside something.
     sample(options_.min_samples, allowed, gathered_, [&](auto first, auto count) { gather(first, count); });
@@ -139,6 +146,10 @@ class GroupSolver {
       const std::uint32_t slot = slots[i];
       if (slot == scene::kNone) continue;
       result.value[slot] = Irradiance(light_.mean(i) + gathered_.mean(i));
+      if (const std::size_t n = lit_from_ ? options_.receiver->sums() : 0; n > 0) {
+        const std::span<float> sums = std::span(result.sums).subspan(slot * n, n);
+        lit_from_.addMeans(i, light_.count(), sums), gathered_from_.addMeans(i, gathered_.count(), sums);
+      }
       const float cached = shared_.indirect() ? shared_.cache.error(group[i]) : 0.0f;
       result.error[slot] = std::hypot(light_.error(i), gathered_.error(i), cached);
       const bool dark = luminance(result.value[slot].rgb) <= kNoLight * shared_.mean;
@@ -184,6 +195,7 @@ class GroupSolver {
           }
           if (direct && !gatherer_.nothingSeen()) addEmitted(first + s, packet, hits, light);
           chunk_.add(rays_, s, light);
+          if (gathered_from_) gathered_from_.add(rays_, first + s, packet, light);
           backs_.add(rays_, packet, hits);
         });
   }
@@ -248,6 +260,7 @@ class GroupSolver {
   std::vector<std::uint32_t> all_;  // places in the group
   Chunk chunk_;
   Estimate light_, gathered_;
+  DirectionalSums lit_from_, gathered_from_;
   BackCounts backs_;
 };
 
@@ -338,6 +351,7 @@ LightmapSolver::LightmapSolver(const trace::Tracer& tracer, const atlas::Atlas& 
   RELUME_CHECK_LE(options.min_samples, options.max_samples);
   RELUME_CHECK_LE(options.max_samples, kMaxSequence);
   RELUME_CHECK_LE(options.cache_samples, kMaxBatch);
+  RELUME_CHECK(!options.receiver || options.method != LightmapMethod::kPath);
   impl_ = std::make_unique<Impl>(tracer, atlas, texels, options);
 }
 LightmapSolver::~LightmapSolver() = default;
@@ -351,6 +365,7 @@ LightmapResult LightmapSolver::solve(Progress& progress, std::span<const std::ui
   LightmapResult result;
   const std::size_t count = which.empty() ? impl.texels.points.size() : which.size();
   result.value.resize(count), result.error.resize(count), result.back_share.resize(count);
+  if (impl.options.receiver) result.sums.resize(count * impl.options.receiver->sums());
   const auto solve = [&](auto& solver, auto group, auto slots) { solver.solve(group, slots, result); };
   if (impl.options.method == LightmapMethod::kPath) {
     const auto make = [&] {

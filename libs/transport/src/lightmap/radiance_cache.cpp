@@ -194,7 +194,7 @@ struct RadianceCache::Builder {
       found.glossy[slot] += r.direct * irradiance * (r.scale * gloss_share.scale + r.bias * gloss_share.bias);
     };
     w.light_rays.trace(w.rays, w.active, 0, options.light_samples,
-                       [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float cosine) {
+                       [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float cosine, Direction) {
                          const Reflectance& r = found.reflectance[slots[texel]];
                          arrived(slots[texel], irradiance * light_share,
                                  r.glossy() ? ggx::reflected(cosine, GlossTable::alphaOf(r.roughness))

@@ -24,7 +24,7 @@ class Worker {
     active_.resize(group.size());
     for (std::uint32_t i = 0; i < group.size(); ++i) active_[i] = i;
     light_rays_.trace(rays_, active_, 0, kLightSamples,
-                      [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float) {
+                      [&](std::uint32_t texel, std::uint32_t, Vec3 irradiance, float, Direction) {
                         result.irradiance[group[texel]] += irradiance * (1.0f / kLightSamples);
                       });
     rays_.select(active_, kGatherSamples);

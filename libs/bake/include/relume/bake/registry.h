@@ -20,12 +20,12 @@
 namespace relume::bake {
 
 struct ParameterSpec {
-  enum class Type : std::uint8_t { kLength, kChoice, kFlag, kCount, kShare };
+  enum class Type : std::uint8_t { kLength, kChoice, kFlag, kCount, kShare, kBasis };
   std::string name;
   Type type = Type::kLength;
   std::string default_value;  ///< as a person would write it; "auto" for a length chosen from the scene's
                               ///< size, or for a count or share that follows the quality
-  std::vector<std::string> choices;  ///< kChoice
+  std::vector<std::string> choices;  ///< kChoice; kBasis takes what basis::makeBasis knows
   std::string help;                  ///< one line, with the unit
 };
 
@@ -57,7 +57,9 @@ struct PointPlane {
   int channels = 1;
   bool unit_interval = false;  ///< clamp to [0, 1] after smoothing and stitching
   bool direction = false;      ///< normalise after smoothing and stitching
-  std::vector<float> values;   ///< shape [points][channels]
+  bool unorm8 = false;         ///< clamp to [lo, hi] after stitching, and store in 8 bit
+  float lo = 0, hi = 1;
+  std::vector<float> values;  ///< shape [points][channels]
 };
 struct PointLayer {
   std::vector<PointPlane> planes;

@@ -65,6 +65,8 @@ class Basis {
   virtual void unpack(std::span<const float> stored, Packing packing,
                       std::span<float> coefficients) const = 0;
 
+  /// Of a plane in a file, beside those of other bases: "sh3-0", "ahd-direction".
+  std::string planeName(const TexturePlane& plane) const;
   std::size_t bytesPerTexel(Packing packing) const;
   /// Numbers in all planes.
   std::size_t storedNumbers(Packing packing) const;

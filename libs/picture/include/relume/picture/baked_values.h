@@ -33,12 +33,15 @@ class BakedValues {
   /// Index into the asset's AtlasTable of the texel at that place; nothing when no surface covers it.
   std::optional<std::uint32_t> tableIndex(const Place& place) const;
   const asset::AtlasTable& table() const { return asset_->atlas; }
+  /// The layer that the view shows; null without one.
+  const asset::Layer* layer() const { return layer_; }
 
  private:
   Vec3 bilinear(const asset::Plane& plane, const Place& place) const;
 
   const scene::Scene& scene_;
   const asset::Asset* asset_;
+  const asset::Layer* layer_ = nullptr;
   const asset::Plane* value_ = nullptr;
   const asset::Plane* bent_ = nullptr;
 };

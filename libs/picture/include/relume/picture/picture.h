@@ -43,6 +43,13 @@ Viewpoint frameScene(const trace::Tracer& tracer, float aspect = 16.0f / 9.0f);
 /// the scene. Throws Error kUsage for an index that is not there.
 Viewpoint defaultViewpoint(const trace::Tracer& tracer, int camera, float aspect = 16.0f / 9.0f);
 
+/// How surfaces reflect directional light (kLightmap of a layer that has it).
+enum class Gloss : std::uint8_t {
+  kNone,   ///< all as if diffusely, metals too
+  kGgx,    ///< as materials say
+  kPhong,  ///< the same with Phong's lobes
+};
+
 struct PictureOptions {
   int width = 960, height = 540;
   int samples = 16;  ///< per pixel, stratified, tent filter of one pixel's radius
@@ -52,6 +59,7 @@ struct PictureOptions {
   float beta = 0.1f;
   LightSet lights;        ///< world space
   Vec3 background{0.0f};  ///< linear
+  Gloss gloss = Gloss::kGgx;
 };
 
 /// Whether a layer holds transfer of light; a view of it wants its plane "value" filled with the irradiance

@@ -20,6 +20,7 @@
 
 #include "relume/atlas/atlas.h"
 #include "relume/atlas/texels.h"
+#include "relume/basis/basis.h"
 #include "relume/core/progress.h"
 #include "relume/core/quantity.h"
 #include "relume/trace/tracer.h"
@@ -49,6 +50,8 @@ struct LightmapOptions {
   std::uint64_t seed = 1;
   RadiosityOptions radiosity;  ///< for kRadiosity
   std::string group;           ///< of scene::lightGroups that shines alone; empty: all; kGather and kPath
+  /// Also what arrives from where, as this basis sums it up; null: irradiance alone; kGather and kRadiosity.
+  std::shared_ptr<const basis::Basis> receiver;
 };
 
 /// Per texel, in the order of Texels::points.
@@ -57,6 +60,7 @@ struct LightmapResult {
   std::vector<float> error;       ///< estimated standard error of the luminance
   std::vector<float> back_share;  ///< of gather rays that met a back face: near 1 inside geometry; 1 where
                                   ///< nothing can be seen
+  std::vector<float> sums;  ///< shape [][receiver->sums()], at receivers with the texels' shading normals
   std::uint64_t rays = 0;
 };
 

@@ -109,6 +109,7 @@ struct FilterOptions {
   int radius = 2;  ///< texels, smaller than the gutter plus the chart
   int normal_power = 32;
   float error_scale = 5.0f;  ///< values further apart than this many standard errors are not mixed
+  int guides = 0;            ///< so many of the first channels say how far apart; 0: all
 };
 void filterTexels(const atlas::Texels& texels, std::span<const float> error,
                   std::span<const std::uint8_t> valid, int channels, std::span<float> values,
