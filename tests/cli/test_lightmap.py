@@ -38,6 +38,8 @@ class Lightmap(test_cli.CliTest):
                                       ("lightmap:materials=lambert,part=direct", [], direct), ("lightmap:materials=lambert,part=indirect,bounces=2", [], 0.75 * direct),
                                       ("lightmap:materials=lambert,solver=radiosity", ["--bounces", 1], 1.5 * direct),
                                       ("lightmap:materials=lambert,solver=radiosity,patch=8,formfactors=hemicube,solution=progressive", [], 2 * direct),
+                                      ("lightmap:materials=lambert,solver=photon,paths=400000", [], 2 * direct),
+                                      ("lightmap:materials=lambert,solver=photon,paths=400000,kernel=pyramid,kernelwidth=3", ["--bounces", 1], 1.5 * direct),
                                       ("lightmap:materials=lambert,solver=path", ["--samples", 64], 2 * direct)):
             self.bake("--layer", layer, *args, scene=room)
             self.assertAlmostEqual(self.mean(), expected, delta=0.01 * expected, msg=f"{layer} {args}")
@@ -137,7 +139,7 @@ class Lightmap(test_cli.CliTest):
 
     def test_wrong_usage(self):
         for layer in ("lightmap:bounces=1.5", "lightmap:bounces=-1", "lightmap:part=some", "lightmap:distance=3", "lightmap:receiver=sh5", "lightmap:receiver=directions:3",
-                      "lightmap:receiver=sh3,solver=path"):
+                      "lightmap:receiver=sh3,solver=path", "lightmap:solver=photon,kernelwidth=40", "lightmap:solver=photon,paths=0"):
             done = self.bake("--layer", layer, expect=2)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.bake("--layer", "ao", "--quality", "draft")

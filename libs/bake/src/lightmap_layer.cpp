@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "directional_planes.h"
+#include "light_digest.h"
+#include "photon_rows.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
 #include "relume/scene/light_groups.h"
@@ -56,27 +58,6 @@ LightmapOptions optionsOf(const LayerContext& context, const Parameters& paramet
   return options;
 }
 
-void addLights(const scene::Scene& scene, Hasher& hasher) {
-  hasher.add(scene.lights.size());
-  for (const Light& l : scene.lights)
-    hasher.add(std::string_view(l.group))
-        .add(l.kind)
-        .add(l.colour)
-        .add(l.intensity)
-        .add(l.range)
-        .add(l.inner_cone)
-        .add(l.outer_cone)
-        .add(l.position)
-        .add(l.direction)
-        .add(l.area)
-        .add(l.two_sided)
-        .addAll(l.triangles)
-        .add(l.angular_radius);
-  const scene::Environment& e = scene.environment;
-  hasher.add(e.radiance.rgb).add(e.rotation).add(e.map != nullptr);
-  if (e.map) hasher.add(e.map->width).add(e.map->height).add(e.map->channels).addAll(e.map->data);
-}
-
 Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
   Hasher hasher;
   hasher
@@ -103,11 +84,7 @@ Digest keyOf(const LightmapOptions& o, const scene::Scene& scene) {
         .add(o.radiosity.cube_resolution)
         .add(o.radiosity.residual);
   if (o.receiver) hasher.add("receiver 1").add(std::string_view(o.receiver->name()));  // raise likewise
-  addLights(scene, hasher);
-  for (const scene::Material& m : scene.materials) {
-    hasher.add(m.normal_scale);
-    addTexture(hasher, scene, m.normal_texture);
-  }
+  addLightsAndNormals(hasher, scene);
   return hasher.digest();
 }
 
@@ -165,6 +142,19 @@ PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const 
   return layer;
 }
 
+TexelSolver gatherSolver(const LayerContext& context, const LightmapOptions& options, std::size_t row) {
+  TexelSolver solver;
+  solver.row = static_cast<int>(row);
+  solver.key = keyOf(options, context.tracer.scene());
+  const auto texels =
+      std::make_shared<transport::LightmapSolver>(context.tracer, context.atlas, context.texels, options);
+  solver.solve = [texels, row](std::span<const std::uint32_t> which, std::span<float> rows,
+                               Progress& progress) {
+    return solveRows(*texels, which, rows, row, 0, progress);
+  };
+  return solver;
+}
+
 }  // namespace
 
 LayerJob prepareLightmap(const LayerContext& context, const Parameters& parameters) {
@@ -176,14 +166,10 @@ LayerJob prepareLightmap(const LayerContext& context, const Parameters& paramete
                 "leave receiver= away, or take solver=gather");
   const std::size_t row = kRow + receiver.sums();
   LayerJob job;
-  job.solver.row = static_cast<int>(row);
-  job.solver.key = keyOf(options, context.tracer.scene());
-  const auto solver =
-      std::make_shared<transport::LightmapSolver>(context.tracer, context.atlas, context.texels, options);
-  job.solver.solve = [solver, row](std::span<const std::uint32_t> which, std::span<float> rows,
-                                   Progress& progress) {
-    return solveRows(*solver, which, rows, row, 0, progress);
-  };
+  if (std::get<std::string>(parameters.at("solver")) == "photon")
+    job.solver = photonSolver(context, photonOptionsOf(context, parameters, receiver));
+  else
+    job.solver = gatherSolver(context, options, row);
   const atlas::Texels& texels = context.texels;
   const bool filter = context.quality.filter;
   job.finish = [&texels, filter, row, receiver](std::span<const float> rows) {

@@ -58,6 +58,21 @@ const ParameterSpec kWindow{"window",
                             {},
                             "sh and hbasis: fade high bands out where irradiance would be negative"};
 
+const ParameterSpec kPaths{"paths",
+                           Type::kCount,
+                           "auto",
+                           {},
+                           "photon: how many are shot; auto: so many per texel as a quarter of its rays"};
+const ParameterSpec kKernel{
+    "kernel",
+    Type::kChoice,
+    "adaptive",
+    {"box", "pyramid", "adaptive"},
+    "photon: box: each texel for itself; pyramid: of kernelwidth; adaptive: as wide as it "
+    "takes to hold 64 paths"};
+const ParameterSpec kKernelWidth{
+    "kernelwidth", Type::kLength, "1.5", {}, "photon: texels from rim to rim of a pyramid, up to 17"};
+
 std::vector<LayerKind> makeRegistry() {
   return {
       {.name = "ao",
@@ -97,8 +112,10 @@ std::vector<LayerKind> makeRegistry() {
            {{"solver",
              Type::kChoice,
              "gather",
-             {"gather", "radiosity", "path"},
-             "radiosity: light from patches; path: unbiased random walks, slow, to judge others by"},
+             {"gather", "radiosity", "path", "photon"},
+             "radiosity: light from patches; path: unbiased random walks, slow, to judge others by; photon: "
+             "paths "
+             "shot from lamps"},
             {"receiver",
              Type::kBasis,
              "irradiance",
@@ -108,6 +125,9 @@ std::vector<LayerKind> makeRegistry() {
              "dominant, farcry, sg5 to sg9, cube, dice, directions:n"},
             kPacking,
             kWindow,
+            kPaths,
+            kKernel,
+            kKernelWidth,
             kPart,
             kBounces,
             kMaterials,

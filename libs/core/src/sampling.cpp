@@ -58,18 +58,19 @@ std::uint32_t hashCombine(std::uint32_t a, std::uint32_t b) {
   return x ^ (x >> 15);
 }
 
-Vec2 sobol2(std::uint32_t index, std::uint32_t stream) {
+Vec2 Sobol2::operator()(std::uint32_t index) const {
   // Shuffle the order within each power-of-two block (an Owen scramble of the index), then scramble each
   // coordinate.
-  const std::uint32_t i =
-      reverseBits(nestedUniformScrambleReversed(reverseBits(index), hashCombine(stream, 0x68bc21ebu)));
+  const std::uint32_t i = reverseBits(nestedUniformScrambleReversed(reverseBits(index), order_));
   std::uint32_t y = 0;
   for (std::uint32_t rest = i; rest; rest &= rest - 1)
     y ^= kSecondDimension[static_cast<std::size_t>(__builtin_ctz(rest))];
-  const std::uint32_t x = nestedUniformScrambleReversed(i, hashCombine(stream, 0x02e5be93u));
-  y = nestedUniformScrambleReversed(y, hashCombine(stream, 0x967a889bu));
+  const std::uint32_t x = nestedUniformScrambleReversed(i, first_);
+  y = nestedUniformScrambleReversed(y, second_);
   return {toUnit(reverseBits(x)), toUnit(reverseBits(y))};
 }
+
+Vec2 sobol2(std::uint32_t index, std::uint32_t stream) { return Sobol2(stream)(index); }
 
 Vec2 squareToDisk(Vec2 u) {
   const float a = 2.0f * u.x - 1.0f, b = 2.0f * u.y - 1.0f;

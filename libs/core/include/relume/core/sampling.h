@@ -18,6 +18,19 @@ std::uint32_t hashCombine(std::uint32_t a, std::uint32_t b);
 /// ([Burley20]).
 Vec2 sobol2(std::uint32_t index, std::uint32_t stream);
 
+/// The same for many indices of one stream: Sobol2(stream)(index) == sobol2(index, stream).
+class Sobol2 {
+ public:
+  explicit Sobol2(std::uint32_t stream)
+      : order_(hashCombine(stream, 0x68bc21ebu)),
+        first_(hashCombine(stream, 0x02e5be93u)),
+        second_(hashCombine(stream, 0x967a889bu)) {}
+  Vec2 operator()(std::uint32_t index) const;
+
+ private:
+  std::uint32_t order_, first_, second_;  // seeds of scrambles
+};
+
 /// The stream of (seed, item, dimension pair).
 inline std::uint32_t streamOf(std::uint64_t seed, std::uint32_t item, std::uint32_t dimension_pair) {
   return hashCombine(
