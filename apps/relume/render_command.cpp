@@ -47,7 +47,9 @@ View viewOf(const std::string& text, const Opened& opened) {
   for (const View view : kViews)
     if (text == picture::name(view)) return view;
   if (!opened.asset) return View::kAlbedo;
-  const auto is_lightmap = [](const asset::Layer& layer) { return layer.kind == "lightmap"; };
+  const auto is_lightmap = [](const asset::Layer& layer) {
+    return layer.kind == "lightmap" || layer.kind == "directional";
+  };
   const auto& layers = opened.asset->layers;
   if (std::any_of(layers.begin(), layers.end(), is_lightmap)) return View::kLightmap;
   if (std::any_of(layers.begin(), layers.end(), picture::isTransfer)) return View::kRelit;

@@ -62,7 +62,7 @@ std::uint32_t GlbScene::addMaterial(const MaterialSpec& spec) {
                    {"pbrMetallicRoughness",
                     {{"baseColorFactor",
                       {tidy(spec.base_colour.x), tidy(spec.base_colour.y), tidy(spec.base_colour.z), 1.0}},
-                     {"metallicFactor", 0.0},
+                     {"metallicFactor", tidy(spec.metallic)},
                      {"roughnessFactor", tidy(spec.roughness)}}}};
   if (spec.texture) material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *spec.texture}};
   const double strength = std::max({spec.emission.x, spec.emission.y, spec.emission.z});

@@ -16,7 +16,7 @@ namespace relume::scenes {
 struct MaterialSpec {
   std::string name;
   Vec3 base_colour{0.8f};  ///< linear
-  float roughness = 0.9f;
+  float roughness = 0.9f, metallic = 0.0f;
   Vec3 emission{0.0f};  ///< radiance; above 1 written with KHR_materials_emissive_strength
   bool double_sided = false;
   std::optional<std::uint32_t> texture = std::nullopt;  ///< base colour, TEXCOORD_0

@@ -4,10 +4,11 @@
 namespace relume::scenes {
 
 std::span<const SceneEntry> allScenes() {
-  static constexpr SceneEntry kScenes[] = {
-      {"cornell", makeCornell},   {"hall", makeHall},           {"temple", makeTemple},
-      {"car", makeCar},           {"halls", makeHalls},         {"rooms", makeRooms},
-      {"crossing", makeCrossing}, {"lampshade", makeLampshade}, {"furniture", makeFurniture}};
+  static constexpr SceneEntry kScenes[] = {{"cornell", makeCornell},     {"hall", makeHall},
+                                           {"temple", makeTemple},       {"car", makeCar},
+                                           {"halls", makeHalls},         {"rooms", makeRooms},
+                                           {"crossing", makeCrossing},   {"lampshade", makeLampshade},
+                                           {"furniture", makeFurniture}, {"glossy_room", makeGlossyRoom}};
   return kScenes;
 }
 

@@ -29,6 +29,8 @@ GlbScene makeCrossing(int detail);
 GlbScene makeLampshade(int detail);
 /// Cupboards on, over and in the floor, and a table.
 GlbScene makeFurniture(int detail);
+/// A room lit by its ceiling and back wall, with soft gloss (docs/bases.md).
+GlbScene makeGlossyRoom(int detail);
 
 struct SceneEntry {
   const char* name;

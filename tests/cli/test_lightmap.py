@@ -137,6 +137,19 @@ class Lightmap(test_cli.CliTest):
             self.assertLess(difference["relative"], 0.2, receiver)
             self.assertNotEqual((self.folder / "plain.exr").read_bytes(), (self.folder / "glossy.exr").read_bytes())
 
+    def test_directional_light_maps(self):
+        view = ["--size", "64x48", "--eye", "1,2,5", "--target", "1,0,0"]
+        relume("render", self.scene, "-o", self.folder / "truth.exr", *view, "--mode", "reference", "--spp", 256, "--materials", "lambert")
+        for layer in ("directional:n=8", "directional:solver=photon,n=14,paths=2000000,scale=0.5"):
+            self.bake("--layer", layer, "--samples", 64)
+            relume("render", self.baked, "-o", self.folder / "plain.exr", *view, "--mode", "relit", "--gloss", "none")
+            difference = json.loads(relume("compare", self.folder / "plain.exr", self.folder / "truth.exr", "--json").stdout)
+            self.assertLess(difference["relative"], 0.2, layer)
+            relume("render", self.baked, "-o", self.folder / "phong.exr", *view, "--mode", "relit", "--gloss", "phong")
+            self.assertNotEqual((self.folder / "plain.exr").read_bytes(), (self.folder / "phong.exr").read_bytes())
+        for layer in ("directional:n=5", "directional:n=65", "directional:scale=9", "directional:solver=path"):
+            self.assertEqual(self.bake("--layer", layer, expect=2).stderr.count("\n"), 1)
+
     def test_wrong_usage(self):
         for layer in ("lightmap:bounces=1.5", "lightmap:bounces=-1", "lightmap:part=some", "lightmap:distance=3", "lightmap:receiver=sh5", "lightmap:receiver=directions:3",
                       "lightmap:receiver=sh3,solver=path", "lightmap:solver=photon,kernelwidth=40", "lightmap:solver=photon,paths=0"):

@@ -15,7 +15,6 @@ namespace relume::bake {
 struct Receiver {
   std::shared_ptr<const basis::Basis> basis;
   basis::Packing packing = basis::Packing::kHalf;
-  std::size_t sums() const { return basis ? basis->sums() : 0; }
 };
 Receiver receiverOf(const Parameters& parameters);
 

@@ -104,10 +104,10 @@ std::uint64_t solveRows(transport::LightmapSolver& solver, std::span<const std::
   return result.rays;
 }
 
+/// Rows as planes: irradiance, and where there are sums one of them.
 PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const float> rows,
-                      std::size_t stride, std::size_t at, const std::string& name,
-                      const Receiver& receiver = {}) {
-  const std::size_t points = texels.points.size(), sums = receiver.sums(), channels = 3 + sums;
+                      std::size_t stride, std::size_t at, const std::string& name, std::size_t sums = 0) {
+  const std::size_t points = texels.points.size(), channels = 3 + sums;
   RELUME_CHECK_EQ(rows.size(), points * stride);
   PointLayer layer;
   std::vector<float> values(points * channels);
@@ -131,14 +131,13 @@ PointLayer finishRows(const atlas::Texels& texels, bool filter, std::span<const 
     return layer;
   }
   PointPlane value{.name = name, .channels = 3, .values = std::vector<float>(points * 3)};
-  std::vector<float> directional(points * sums);
+  PointPlane rest{
+      .name = "sums", .channels = static_cast<int>(sums), .values = std::vector<float>(points * sums)};
   for (std::size_t i = 0; i < points; ++i) {
     std::copy_n(&values[i * channels], 3, &value.values[i * 3]);
-    std::copy_n(&values[i * channels] + 3, sums, &directional[i * sums]);
+    std::copy_n(&values[i * channels] + 3, sums, &rest.values[i * sums]);
   }
-  layer.planes.push_back(std::move(value));
-  for (PointPlane& plane : directionalPlanes(receiver, texels, directional))
-    layer.planes.push_back(std::move(plane));
+  layer.planes.push_back(std::move(value)), layer.planes.push_back(std::move(rest));
   return layer;
 }
 
@@ -157,23 +156,37 @@ TexelSolver gatherSolver(const LayerContext& context, const LightmapOptions& opt
 
 }  // namespace
 
-LayerJob prepareLightmap(const LayerContext& context, const Parameters& parameters) {
+LayerJob prepareSums(const LayerContext& context, const Parameters& parameters,
+                     std::shared_ptr<const basis::Basis> basis) {
   LightmapOptions options = optionsOf(context, parameters);
-  const Receiver receiver = receiverOf(parameters);
-  options.receiver = receiver.basis;
-  if (receiver.basis && options.method == transport::LightmapMethod::kPath)
+  options.receiver = basis;
+  if (basis && options.method == transport::LightmapMethod::kPath)
     throw Error(ErrorCode::kUsage, "--layer lightmap", "solver=path knows irradiance alone",
                 "leave receiver= away, or take solver=gather");
-  const std::size_t row = kRow + receiver.sums();
+  const std::size_t sums = basis ? basis->sums() : 0, row = kRow + sums;
   LayerJob job;
   if (std::get<std::string>(parameters.at("solver")) == "photon")
-    job.solver = photonSolver(context, photonOptionsOf(context, parameters, receiver));
+    job.solver = photonSolver(context, photonOptionsOf(context, parameters, std::move(basis)));
   else
     job.solver = gatherSolver(context, options, row);
-  const atlas::Texels& texels = context.texels;
-  const bool filter = context.quality.filter;
-  job.finish = [&texels, filter, row, receiver](std::span<const float> rows) {
-    return finishRows(texels, filter, rows, row, 0, "value", receiver);
+  job.finish = [&texels = context.texels, filter = context.quality.filter, row,
+                sums](std::span<const float> rows) {
+    return finishRows(texels, filter, rows, row, 0, "value", sums);
+  };
+  return job;
+}
+
+LayerJob prepareLightmap(const LayerContext& context, const Parameters& parameters) {
+  const Receiver receiver = receiverOf(parameters);
+  LayerJob job = prepareSums(context, parameters, receiver.basis);
+  if (!receiver.basis) return job;
+  job.finish = [finish = job.finish, &texels = context.texels, receiver](std::span<const float> rows) {
+    PointLayer layer = finish(rows);
+    const PointPlane sums = std::move(layer.planes.back());
+    layer.planes.pop_back();
+    for (PointPlane& plane : directionalPlanes(receiver, texels, sums.values))
+      layer.planes.push_back(std::move(plane));
+    return layer;
   };
   return job;
 }

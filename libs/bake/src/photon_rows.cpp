@@ -42,7 +42,7 @@ struct Traced {
 }  // namespace
 
 PhotonOptions photonOptionsOf(const LayerContext& context, const Parameters& parameters,
-                              const Receiver& receiver) {
+                              std::shared_ptr<const basis::Basis> receiver) {
   PhotonOptions o;
   const std::string& kernel = std::get<std::string>(parameters.at("kernel"));
   o.kernel.shape = kernel == "box"       ? PhotonKernel::Shape::kBox
@@ -70,7 +70,7 @@ PhotonOptions photonOptionsOf(const LayerContext& context, const Parameters& par
   const double bounces = std::get<double>(parameters.at("bounces"));
   o.max_bounces = bounces < 1e6 ? static_cast<int>(bounces) : transport::ReferenceOptions::kUnlimited;
   o.seed = context.seed;
-  o.receiver = receiver.basis;
+  o.receiver = std::move(receiver);
   return o;
 }
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Rows of texels from light that is traced from its sources.
 #pragma once
-#include "directional_planes.h"
+#include <memory>
+
 #include "relume/bake/registry.h"
+#include "relume/basis/basis.h"
 #include "relume/transport/photons.h"
 
 namespace relume::bake {
 
 /// As the parameters "paths", "kernel", "kernelwidth", "part", "bounces" and "materials" say.
 transport::PhotonOptions photonOptionsOf(const LayerContext& context, const Parameters& parameters,
-                                         const Receiver& receiver);
+                                         std::shared_ptr<const basis::Basis> receiver);
 
 /// Of the scene's lights and materials as well, but not of its surfaces.
 Digest keyOf(const transport::PhotonOptions& options, const scene::Scene& scene);

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "directional_layer.h"
 #include "lightmap_layer.h"
 #include "lightpath_layer.h"
 #include "occlusion_layers.h"
@@ -143,6 +144,31 @@ std::vector<LayerKind> makeRegistry() {
              {"gathering", "progressive"},
              "radiosity: row by row, or shooting the patch with the most light left; both end alike"}},
        .prepare = prepareLightmap,
+       .needs_light = true},
+      {.name = "directional",
+       .summary = "directional light maps: irradiance from each of a set of directions, for gloss",
+       .emitters = "the scene's lights, emissive surfaces, environment",
+       .transport = "path-traced, or light-traced",
+       .receivers = "texels, a set of directions",
+       .codec = "packed by direction, 8 bit",
+       .parameters = {{"n", Type::kCount, "14", {}, "directions, 6 to 64"},
+                      {"solver",
+                       Type::kChoice,
+                       "gather",
+                       {"gather", "photon"},
+                       "photon: paths shot from lamps, as published"},
+                      {"scale",
+                       Type::kLength,
+                       "1",
+                       {},
+                       "texels of a map along a texel of the atlas that faces its direction"},
+                      kPaths,
+                      kKernel,
+                      kKernelWidth,
+                      kPart,
+                      kBounces,
+                      kMaterials},
+       .prepare = prepareDirectional,
        .needs_light = true},
       {.name = "lightgroups",
        .summary = "irradiance from each group of the scene's lights: to be dimmed, coloured, switched",

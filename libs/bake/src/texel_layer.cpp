@@ -63,6 +63,7 @@ BakedLayer bakeTexels(const LayerTask& task, std::span<const atlas::SeamSample> 
     report = nullptr;  // seams are told of the layer's first plane
     numbers.raw_bytes += baked.layer.planes.back().values.size() * sizeof(float);
   }
+  baked.layer.tables = std::move(points.tables);
   baked.valid = std::move(points.valid);
   task.stopwatch.lap(prepared.name + " finish");
   return baked;

@@ -42,6 +42,13 @@ GlossyLobe GlossyLobe::phong(Normal normal, Direction outgoing, float exponent, 
   return lobe;
 }
 
+GlossyLobe GlossyLobe::widened(float sharpness) const {
+  if (kind_ == Kind::kPhong) return phong(normal_, outgoing_, width_ * sharpness / (width_ + sharpness), f0_);
+  // As in ggx(): of a lobe that does not lean.
+  const float own = 0.5f / (width_ * width_), wide = own * sharpness / (own + sharpness);
+  return ggx(normal_, outgoing_, std::sqrt(std::min(std::sqrt(0.5f / wide), 1.0f)), f0_);
+}
+
 Vec3 GlossyLobe::evaluate(Direction incoming) const {
   const float n_l = glm::dot(normal_, incoming);
   if (!(n_l > 0)) return Vec3(0.0f);

@@ -26,7 +26,8 @@ bool showsTransfer(View view) { return view == View::kRelit || view == View::kIn
 /// An irradiance is no share of anything, nor the other way round.
 bool fits(const asset::Layer& layer, View view) {
   if (view == View::kTexels) return true;
-  return (view == View::kLightmap) == (layer.kind == "lightmap") && showsTransfer(view) == isTransfer(layer);
+  return (view == View::kLightmap) == (layer.kind == "lightmap" || layer.kind == "directional") &&
+         showsTransfer(view) == isTransfer(layer);
 }
 
 /// What to bake for a view that finds nothing.

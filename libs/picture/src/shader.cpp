@@ -82,7 +82,8 @@ Vec3 Shader::lightFromAllSides(const ShadingPoint& point, const Receiver& receiv
   std::array<float, BakedDirections::kMost> numbers;
   const basis::Basis& basis = directions_->basis();
   const auto coefficients = std::span(numbers).first(basis.coefficients());
-  directions_->coefficients(place, coefficients);
+  if (!directions_->coefficients(baked_, place, coefficients))
+    return reflected(Albedo(Vec3(surface.base_colour)), Irradiance(baked_.value(place))).rgb;
   const scene::Scene& scene = tracer_.scene();
   const Normal own = scene::shadingNormal(scene, point.where);
   const basis::Receiver at(own);

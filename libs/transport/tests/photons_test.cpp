@@ -173,5 +173,82 @@ TEST(Photons, AgreeWithGatheringOnGlossyWalls) {
   expectAgreement(Lit(std::move(scene), 64), Materials::kFull);
 }
 
+/// Directional maps of both solvers, block by block of 8 x 8 texels and direction by direction: the mean of
+/// some runs of each, and how much runs differ, which says how much the means may.
+void expectSameDirections(const Lit& room, Materials materials) {
+  constexpr int kRuns = 8;
+  constexpr std::uint32_t kBlock = 8;
+  const auto basis = std::shared_ptr<const basis::Basis>(basis::makeBasis("directions:14"));
+  const auto width = static_cast<std::uint32_t>(room.texels.width);
+  const std::uint32_t across = width / kBlock, blocks = across * across * room.texels.pages;
+  std::vector<double> area(blocks, 0.0);
+  const auto blockOf = [&](const atlas::SurfacePoint& p) {
+    const std::uint32_t page = p.texel / (width * width), in_page = p.texel % (width * width);
+    return (page * across + in_page / width / kBlock) * across + in_page % width / kBlock;
+  };
+  for (const atlas::SurfacePoint& p : room.texels.points) area[blockOf(p)] += static_cast<double>(p.area);
+  struct Moments {
+    std::vector<double> sum, squares;
+  };
+  const auto measured = [&](const auto& sums_of_run) {
+    Moments m{std::vector<double>(blocks * 14, 0.0), std::vector<double>(blocks * 14, 0.0)};
+    for (int run = 0; run < kRuns; ++run) {
+      const std::vector<float> sums = sums_of_run(static_cast<std::uint64_t>(run + 1));
+      std::vector<double> block(blocks * 14, 0.0);
+      for (std::size_t i = 0; i < room.texels.points.size(); ++i)
+        for (std::size_t d = 0; d < 14; ++d)
+          block[blockOf(room.texels.points[i]) * 14 + d] +=
+              static_cast<double>(room.texels.points[i].area * sums[i * 42 + d * 3 + 1]);
+      for (std::size_t k = 0; k < block.size(); ++k)
+        m.sum[k] += block[k] / kRuns, m.squares[k] += block[k] * block[k] / kRuns;
+    }
+    return m;
+  };
+  const Moments photons = measured([&](std::uint64_t seed) {
+    PhotonOptions options = shot(1 << 19);
+    options.materials = materials, options.receiver = basis, options.seed = seed;
+    return solve(room, options).sums;
+  });
+  const Moments gathered = measured([&](std::uint64_t seed) {
+    LightmapOptions options = made::plain(64);
+    options.materials = materials, options.receiver = basis, options.seed = seed, options.cache_samples = 64;
+    return room.solve(options).sums;
+  });
+  const auto variance = [](const Moments& m, std::size_t k) {
+    return std::max(m.squares[k] - m.sum[k] * m.sum[k], 0.0) / (kRuns - 1);
+  };
+  double total = 0, chi = 0;
+  for (const double s : photons.sum) total += s;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < photons.sum.size(); ++k) {
+    const double d = photons.sum[k] - gathered.sum[k];
+    // Besides, the cache of gathering has an error of its own, half a percent of the block's light.
+    double light = 0;
+    for (std::size_t j = k / 14 * 14; j < k / 14 * 14 + 14; ++j) light += photons.sum[j];
+    const double e2 = variance(photons, k) + variance(gathered, k) + 2.5e-5 * light * light;
+    if (photons.sum[k] + gathered.sum[k] < 1e-5 * total) continue;
+    chi += d * d / e2, ++n;
+  }
+  ASSERT_GT(n, 300u);
+  // Student's t with 7 degrees of freedom has a variance of 7/5.
+  EXPECT_LT(chi / static_cast<double>(n), 2.0);
+}
+
+TEST(Photons, DirectionsAgreeWithGatheringInARoom) {
+  expectSameDirections(Lit(made::colouredRoom(false), 64), Materials::kLambert);
+}
+
+TEST(Photons, DirectionsAgreeWithGatheringUnderASky) {
+  scene::Scene scene = made::cavity(1, std::acos(0.4f), {0.8f, 0.5f, 0.2f});
+  scene.environment.radiance = Radiance(1.0f);
+  expectSameDirections(Lit(std::move(scene), 64), Materials::kLambert);
+}
+
+TEST(Photons, DirectionsAgreeWithGatheringOnGlossyWalls) {
+  scene::Scene scene = made::colouredRoom(false);
+  for (scene::Material& m : scene.materials) m.roughness = 0.5f, m.metallic = 0.5f;
+  expectSameDirections(Lit(std::move(scene), 64), Materials::kFull);
+}
+
 }  // namespace
 }  // namespace relume::transport

@@ -15,6 +15,5 @@ std::unique_ptr<Basis> makeAhd();
 std::unique_ptr<Basis> makeDominant();
 std::unique_ptr<Basis> makeFarCry();
 std::unique_ptr<Basis> makeGaussians(std::size_t lobes);
-std::unique_ptr<Basis> makeDirections(std::size_t directions);
 
 }  // namespace relume::basis

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "bases/bases.h"
+#include "relume/basis/direction_set.h"
 #include "relume/core/error.h"
 
 namespace relume::basis {
@@ -18,24 +19,25 @@ struct Named {
 
 const std::vector<Named>& table() {
   using O = BasisOptions;
-  static const std::vector<Named> rows = {{"irradiance", [](const O&) { return makeIrradiance(); }},
-                                          {"sh2", [](const O& o) { return makeSh(2, o.window); }},
-                                          {"sh3", [](const O& o) { return makeSh(3, o.window); }},
-                                          {"sh4", [](const O& o) { return makeSh(4, o.window); }},
-                                          {"hbasis4", [](const O& o) { return makeH(4, o.window); }},
-                                          {"hbasis6", [](const O& o) { return makeH(6, o.window); }},
-                                          {"hl2", [](const O&) { return makeHl2(); }},
-                                          {"ahd", [](const O&) { return makeAhd(); }},
-                                          {"dominant", [](const O&) { return makeDominant(); }},
-                                          {"farcry", [](const O&) { return makeFarCry(); }},
-                                          {"sg5", [](const O&) { return makeGaussians(5); }},
-                                          {"sg6", [](const O&) { return makeGaussians(6); }},
-                                          {"sg7", [](const O&) { return makeGaussians(7); }},
-                                          {"sg8", [](const O&) { return makeGaussians(8); }},
-                                          {"sg9", [](const O&) { return makeGaussians(9); }},
-                                          {"cube", [](const O&) { return makeCube(); }},
-                                          {"dice", [](const O&) { return makeDice(); }},
-                                          {"directions:14", [](const O&) { return makeDirections(14); }}};
+  static const std::vector<Named> rows = {
+      {"irradiance", [](const O&) { return makeIrradiance(); }},
+      {"sh2", [](const O& o) { return makeSh(2, o.window); }},
+      {"sh3", [](const O& o) { return makeSh(3, o.window); }},
+      {"sh4", [](const O& o) { return makeSh(4, o.window); }},
+      {"hbasis4", [](const O& o) { return makeH(4, o.window); }},
+      {"hbasis6", [](const O& o) { return makeH(6, o.window); }},
+      {"hl2", [](const O&) { return makeHl2(); }},
+      {"ahd", [](const O&) { return makeAhd(); }},
+      {"dominant", [](const O&) { return makeDominant(); }},
+      {"farcry", [](const O&) { return makeFarCry(); }},
+      {"sg5", [](const O&) { return makeGaussians(5); }},
+      {"sg6", [](const O&) { return makeGaussians(6); }},
+      {"sg7", [](const O&) { return makeGaussians(7); }},
+      {"sg8", [](const O&) { return makeGaussians(8); }},
+      {"sg9", [](const O&) { return makeGaussians(9); }},
+      {"cube", [](const O&) { return makeCube(); }},
+      {"dice", [](const O&) { return makeDice(); }},
+      {"directions:14", [](const O&) { return makeDirections(minimalEnergy(14)); }}};
   return rows;
 }
 
@@ -56,14 +58,14 @@ std::vector<std::string> basisNames() {
 std::unique_ptr<Basis> makeBasis(const std::string& name, const BasisOptions& options) {
   for (const Named& row : table())
     if (row.name == name) return row.make(options);
-  if (name == "directions") return makeDirections(14);
+  if (name == "directions") return makeDirections(minimalEnergy(14));
   constexpr std::string_view kPrefix = "directions:";
   if (name.starts_with(kPrefix)) {
     std::size_t n = 0;
     const char* const end = name.data() + name.size();
     const auto [last, ec] = std::from_chars(name.data() + kPrefix.size(), end, n);
     if (ec == std::errc() && last == end && n >= kLeastDirections && n <= kMostDirections)
-      return makeDirections(n);
+      return makeDirections(minimalEnergy(n));
     throw Error(ErrorCode::kUsage, "receiver " + name, "is no number of directions",
                 "write directions:6 to directions:64");
   }

@@ -63,9 +63,10 @@ struct PointPlane {
 };
 struct PointLayer {
   std::vector<PointPlane> planes;
-  std::vector<float> error;         ///< standard error per point
-  std::vector<std::uint8_t> valid;  ///< 0: buried in geometry
-  std::vector<float> back_share;    ///< share of rays that met back faces; empty: not known
+  std::vector<float> error;          ///< standard error per point
+  std::vector<std::uint8_t> valid;   ///< 0: buried in geometry
+  std::vector<float> back_share;     ///< share of rays that met back faces; empty: not known
+  std::vector<asset::Table> tables;  ///< what the layer keeps besides
 };
 
 struct LayerJob {

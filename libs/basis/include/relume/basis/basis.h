@@ -82,6 +82,8 @@ struct BasisOptions {
 /// "cube", "dice", "directions:n" with n from 6 to 64 ("directions" alone: 14). Throws Error kUsage that
 /// names them.
 std::unique_ptr<Basis> makeBasis(const std::string& name, const BasisOptions& options = {});
+/// directions:n of directions that somebody else chose, world, unit; at most 64.
+std::unique_ptr<Basis> makeDirections(std::vector<Direction> set);
 /// What makeBasis() knows, with "directions:14" for all of their kind.
 std::vector<std::string> basisNames();
 

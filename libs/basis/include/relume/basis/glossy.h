@@ -18,6 +18,10 @@ class GlossyLobe {
   static GlossyLobe ggx(Normal normal, Direction outgoing, float roughness, Vec3 f0);
   static GlossyLobe phong(Normal normal, Direction outgoing, float exponent, Vec3 specular);
 
+  /// The same of a surface so much rougher that light from one direction looks as if it came from a Gaussian
+  /// of that sharpness about it: variances add.
+  GlossyLobe widened(float sharpness) const;
+
   /// f cos of the incoming direction, per steradian; 0 below the surface.
   Vec3 evaluate(Direction incoming) const;
   /// Share of light that is reflected to the eye, were it to come from all sides alike.

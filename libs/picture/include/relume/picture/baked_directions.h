@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "relume/asset/asset.h"
+#include "relume/asset/direction_maps.h"
 #include "relume/basis/basis.h"
 #include "relume/picture/baked_values.h"
 
@@ -21,12 +22,16 @@ class BakedDirections {
   BakedDirections(const asset::Layer& layer, const asset::AtlasTable& atlas);
 
   const basis::Basis& basis() const { return *basis_; }
-  /// Coefficients there, shape [basis().coefficients()]: what is stored, bilinear, then unpacked.
-  void coefficients(const BakedValues::Place& place, std::span<float> out) const;
+  /// Coefficients there, shape [basis().coefficients()]: what is stored, bilinear, then unpacked. False where
+  /// a layer that keeps charts by direction has no chart.
+  bool coefficients(const BakedValues& baked, const BakedValues::Place& place, std::span<float> out) const;
 
   static constexpr std::size_t kMost = 256;  ///< coefficients of any basis
 
  private:
+  bool fromMaps(const BakedValues& baked, const BakedValues::Place& place, std::span<float> out) const;
+
+  asset::DirectionMaps maps_;  // of a layer `directional`; otherwise empty
   std::unique_ptr<basis::Basis> basis_;
   basis::Packing packing_ = basis::Packing::kHalf;
   std::vector<const asset::Plane*> planes_;
