@@ -9,6 +9,7 @@
 #include "command.h"
 #include "exposure.h"
 #include "files.h"
+#include "gl_picture.h"
 #include "lights.h"
 #include "reference_picture.h"
 #include "relit.h"
@@ -28,7 +29,7 @@ constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit, 
 
 struct RenderOptions {
   std::string input, output, mode, view, layer, lights, ambient, background = "0.05", tone = "auto";
-  std::string eye, target, size = "960x540", renderer = "cpu", materials = "full", gloss = "ggx";
+  std::string eye, target, size = "960x540", renderer = "cpu", materials, gloss = "ggx";
   std::vector<std::string> gains;
   std::optional<float> exposure, error;
   std::optional<int> spp, bounces;
@@ -137,13 +138,23 @@ bool showsOwnLight(const Opened& opened, const std::string& layer) {
 
 void renderPicture(const RenderOptions& options, Progress& progress) {
   requireWritable(options.output);
-  if (options.mode == "reference" || options.mode == "direct") return renderReference(options, progress);
+  if (options.mode == "reference" || options.mode == "direct") {
+    if (options.renderer == "gl")
+      throw Error(ErrorCode::kUsage, "--renderer gl",
+                  fmt::format("traces no paths, which --mode {} needs", options.mode),
+                  "leave it out, or choose --mode relit");
+    return renderReference(options, progress);
+  }
+  if (options.materials == "full" && options.renderer != "gl")
+    throw Error(ErrorCode::kUsage, "--materials full", "is not what rays show of a relit bake",
+                "add --renderer gl, or choose --mode reference");
   const auto opened = open(options.input, {.normal_maps = true});
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const IVec2 size = parseExtent(options.size, "--size");
   picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp.value_or(16)};
   picture.view = options.mode == "relit" ? View::kRelit : viewOf(options.view, *opened);
   if (options.mode == "relit" && showsOwnLight(*opened, options.layer)) picture.view = View::kLightmap;
+  const bool gl = options.renderer == "gl";
   picture.layer = options.layer;
   picture.gloss = options.gloss == "none"    ? picture::Gloss::kNone
                   : options.gloss == "phong" ? picture::Gloss::kPhong
@@ -160,9 +171,13 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   picture.ambient = Irradiance(parseTriple(ambient, "--ambient", true));
   picture.beta = options.beta;
   picture.background = parseTriple(options.background, "--background", true);
-  if (isRelit(picture.view)) relightForPicture(options, picture, *opened);
-  const image::Image linear = picture::render(tracer, opened->asset ? &*opened->asset : nullptr,
-                                              viewpointOf(options, size, tracer), picture, progress);
+  const picture::Viewpoint viewpoint = viewpointOf(options, size, tracer);
+  if (isRelit(picture.view) && !(gl && followsLamps(*opened, options.layer)))
+    relightForPicture(options, picture, *opened);
+  const asset::Asset* asset = opened->asset ? &*opened->asset : nullptr;
+  const image::Image linear =
+      gl ? glPicture(opened->scene, asset, viewpoint, picture, options.materials == "full")
+         : picture::render(tracer, asset, viewpoint, picture, progress);
   writePicture(options, linear, picture.view, picture.background);
 }
 
@@ -221,11 +236,12 @@ void addRender(CLI::App& app, Program& program) {
       ->check(CLI::Range(0, 1000000))
       ->needs(mode);
   command
-      ->add_option("--materials", options->materials,
-                   "with --mode: full, or lambert: diffuse alone, as lightmaps have it")
-      ->check(CLI::IsMember({"full", "lambert"}))
-      ->needs(mode)
-      ->capture_default_str();
+      ->add_option(
+          "--materials", options->materials,
+          "full: metallic and rough as glTF has it, with normal maps; lambert: diffuse alone, as lightmaps "
+          "have it. Without it, full with --mode reference and direct, else lambert; full needs one of "
+          "these or --renderer gl")
+      ->check(CLI::IsMember({"full", "lambert"}));
   command->add_option("--seed", options->seed, "with --mode: of the random numbers")
       ->needs(mode)
       ->capture_default_str();
@@ -253,8 +269,10 @@ void addRender(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("--background", options->background, "linear, one number or R,G,B")
       ->capture_default_str();
-  command->add_option("--renderer", options->renderer, "cpu: rays")
-      ->check(CLI::IsMember({"cpu"}))
+  command
+      ->add_option("--renderer", options->renderer,
+                   "cpu: rays; gl: OpenGL 4.5 without a window, of views and --mode relit")
+      ->check(CLI::IsMember({"cpu", "gl"}))
       ->capture_default_str();
   onCommand(command, program, options, renderPicture);
 }

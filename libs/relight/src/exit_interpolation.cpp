@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "exit_interpolation.h"
+#include "relume/relight/exit_interpolation.h"
 
 #include <algorithm>
 #include <cmath>

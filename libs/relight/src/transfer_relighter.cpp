@@ -11,12 +11,12 @@
 
 #include "block_product.h"
 #include "entry_lights.h"
-#include "exit_interpolation.h"
 #include "probe_field.h"
 #include "relume/asset/transfer.h"
 #include "relume/core/check.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
+#include "relume/relight/exit_interpolation.h"
 
 namespace relume::relight {
 namespace {

@@ -35,6 +35,9 @@ class BakedValues {
   const asset::AtlasTable& table() const { return asset_->atlas; }
   /// The layer that the view shows; null without one.
   const asset::Layer* layer() const { return layer_; }
+  /// The planes that the view shows, for those who look them up themselves; null where it shows none.
+  const asset::Plane* valuePlane() const { return value_; }
+  const asset::Plane* bentPlane() const { return bent_; }
 
  private:
   Vec3 bilinear(const asset::Plane& plane, const Place& place) const;

@@ -20,6 +20,11 @@ class ExitInterpolation {
   explicit ExitInterpolation(const asset::VertexExits& vertices);
 
   std::size_t texelCount() const { return first_.size() - 1; }
+  /// As a sparse matrix by rows, for renderers that multiply it themselves: of texel i the terms first()[i]
+  /// up to first()[i + 1].
+  std::span<const std::uint32_t> first() const { return first_; }
+  std::span<const std::uint32_t> exit() const { return exit_; }
+  std::span<const float> weight() const { return weight_; }
   /// exits: [exits]; texels: [texels of the atlas table]
   void apply(std::span<const Irradiance> exits, std::span<Irradiance> texels) const;
 

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "gl_picture.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "relit.h"
+#include "relume/core/error.h"
+#include "relume/image/colour.h"
+#include "relume/picture/baked_directions.h"
+#include "relume/picture/baked_values.h"
+#include "relume/render/context.h"
+
+namespace relume::app {
+namespace {
+
+constexpr Vec3 kInvalid{1.0f, 0.0f, 0.0f};
+constexpr Vec3 kValid{0.5f};
+constexpr Vec3 kNoChart{0.2f};
+constexpr Vec3 kWithoutBake{1.0f, 0.0f, 1.0f};
+constexpr render::ShadowOptions kFineShadows{.cube_size = 1024, .plane_size = 4096};
+
+bool showsTransfer(picture::View view) {
+  return view == picture::View::kRelit || view == picture::View::kIndirect;
+}
+
+std::vector<Vec3> labelsOf(const asset::AtlasTable& atlas, picture::View view) {
+  std::vector<Vec3> colours;
+  for (std::size_t i = 0; i < atlas.texel.size(); ++i)
+    colours.push_back(view == picture::View::kCharts ? image::labelColour(atlas.chart[i])
+                      : atlas.valid[i]               ? kValid
+                                                     : kInvalid);
+  return colours;
+}
+
+}  // namespace
+
+bool followsLamps(const Opened& opened, const std::string& layer) {
+  if (!opened.asset) return false;
+  asset::Asset copy_of_names;  // transferLayer chooses among layers, and says what is missing
+  for (const asset::Layer& l : opened.asset->layers)
+    copy_of_names.layers.push_back({.name = l.name, .kind = l.kind});
+  return transferLayer(copy_of_names, layer).kind == "lightpath";
+}
+
+render::View viewFor(picture::View view) {
+  switch (view) {
+    case picture::View::kObscurance:
+      return render::View::kObscurance;
+    case picture::View::kOcclusion:
+      return render::View::kOcclusion;
+    case picture::View::kLit:
+      return render::View::kLit;
+    case picture::View::kLightmap:
+      return render::View::kLightmap;
+    case picture::View::kRelit:
+      return render::View::kRelit;
+    case picture::View::kIndirect:
+      return render::View::kIndirect;
+    case picture::View::kAlbedo:
+      return render::View::kAlbedo;
+    case picture::View::kNormal:
+      return render::View::kNormal;
+    case picture::View::kBentNormal:
+      return render::View::kBentNormal;
+    case picture::View::kTexels:
+      return render::View::kTexels;
+    case picture::View::kCharts:
+    case picture::View::kValidity:
+      return render::View::kLabels;
+  }
+  return render::View::kAlbedo;
+}
+
+render::Camera cameraOf(const picture::Viewpoint& viewpoint) {
+  return {viewpoint.world_from_camera, viewpoint.vertical_fov, viewpoint.ortho_height};
+}
+
+void showOnAtlas(render::Renderer& renderer, const scene::Scene& scene, const asset::Asset* asset,
+                 picture::View view, const std::string& layer) {
+  if (asset && showsTransfer(view)) {
+    const picture::BakedValues match(scene, asset, picture::View::kCharts, "");  // throws where they do not
+    const auto wanted = [&](const asset::Layer& l) {
+      return layer.empty() ? picture::isTransfer(l) : l.name == layer;
+    };
+    const auto found = std::find_if(asset->layers.begin(), asset->layers.end(), wanted);
+    if (found != asset->layers.end() && found->kind == "lightpath")
+      return renderer.setTransfer(*asset, *found);
+  }
+  const picture::BakedValues baked(scene, asset, view, layer);
+  if (view == picture::View::kLightmap && baked.layer() && picture::isDirectional(*baked.layer()))
+    throw Error(ErrorCode::kUnsupported, "layer " + baked.layer()->name,
+                "keeps light by direction, which OpenGL does not show here", "take --renderer cpu");
+  if (baked.valuePlane()) renderer.setValues(asset->atlas, *baked.valuePlane());
+  if (baked.bentPlane()) renderer.setBent(asset->atlas, *baked.bentPlane());
+  if (view == picture::View::kCharts || view == picture::View::kValidity)
+    renderer.setLabels(asset->atlas, labelsOf(asset->atlas, view),
+                       view == picture::View::kCharts ? kNoChart : kWithoutBake);
+}
+
+image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
+                       const picture::Viewpoint& viewpoint, const picture::PictureOptions& options,
+                       bool full_materials) {
+  const render::HeadlessContext context;
+  render::Renderer renderer(scene, kFineShadows);
+  showOnAtlas(renderer, scene, asset, options.view, options.layer);
+  render::FrameSettings frame;
+  frame.size = {options.width, options.height};
+  frame.camera = cameraOf(viewpoint);
+  frame.view = viewFor(options.view);
+  if (options.view == picture::View::kLit || showsTransfer(options.view)) frame.lights = options.lights;
+  frame.ambient = options.ambient;
+  frame.beta = options.beta;
+  frame.background = options.background;
+  frame.full_materials = full_materials;
+  return renderer.picture(frame, options.samples);
+}
+
+}  // namespace relume::app

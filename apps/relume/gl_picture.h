@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Pictures by OpenGL: what `relume render --renderer gl` does instead of rays.
+#pragma once
+#include <string>
+
+#include "files.h"
+#include "relume/picture/picture.h"
+#include "relume/render/renderer.h"
+
+namespace relume::app {
+
+/// Whether the bake is lit by lamps that move and its light follows them on the device: of a lightpath. Of
+/// other transfer the run-time's irradiance is shown.
+bool followsLamps(const Opened& opened, const std::string& layer);
+
+/// The view of the same name.
+render::View viewFor(picture::View view);
+render::Camera cameraOf(const picture::Viewpoint& viewpoint);
+
+/// Gives the renderer what the view shows of the bake. Throws as picture::render.
+void showOnAtlas(render::Renderer& renderer, const scene::Scene& scene, const asset::Asset* asset,
+                 picture::View view, const std::string& layer);
+
+/// The picture that picture::render makes, without a window; `full_materials`: with glTF's lobes and normal
+/// maps. Throws as picture::render, and Error kUnsupported where there is no OpenGL.
+image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
+                       const picture::Viewpoint& viewpoint, const picture::PictureOptions& options,
+                       bool full_materials);
+
+}  // namespace relume::app

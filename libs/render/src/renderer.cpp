@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+// A frame: shadow maps of lights that moved, their light at entries, the product and its texels where
+// anything changed, depth, surfaces, and translucent ones from far to near.
+#include "relume/render/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "atlas_textures.h"
+#include "camera_matrix.h"
+#include "gl_objects.h"
+#include "gpu_lights.h"
+#include "gpu_scene.h"
+#include "pass_timer.h"
+#include "relighting.h"
+#include "relume/core/sampling.h"
+#include "relume/render/context.h"
+#include "shadow_maps.h"
+
+namespace relume::render {
+namespace {
+
+// Units of shaders/surface.frag.glsl.
+constexpr GLuint kValueUnit = 4, kLabelUnit = 5, kBentUnit = 6, kReflectedUnit = 7, kObscuranceUnit = 10;
+constexpr int kReflectedSize = 32;
+constexpr int kThumbnailWidth = 32, kThumbnailHeight = 18;
+
+Texture reflectedTable() {
+  Texture table = Texture::make2d(GL_RG32F, {kReflectedSize, kReflectedSize});
+  table.plain(true);
+  const Program program = Program::compute("reflected.comp.glsl");
+  glBindImageTexture(0, table.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+  program.use();
+  glDispatchCompute(kReflectedSize / 8, kReflectedSize / 8, 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  return table;
+}
+
+/// u in [0, 1) to the tent density 1 - |x| on [-1, 1].
+float toTent(float u) { return u < 0.5f ? std::sqrt(2.0f * u) - 1.0f : 1.0f - std::sqrt(2.0f - 2.0f * u); }
+
+/// Places of samples about a pixel's centre, of which their mean is. One sample is the centre.
+std::vector<Vec2> tentOffsets(int samples) {
+  std::vector<Vec2> offsets;
+  Vec2 sum(0.0f);
+  for (int s = 0; s < samples; ++s) {
+    const Vec2 u = sobol2(static_cast<std::uint32_t>(s), 0x9e3779b9u);
+    offsets.emplace_back(toTent(u.x), toTent(u.y));
+    sum += offsets.back();
+  }
+  for (Vec2& offset : offsets) offset -= sum / static_cast<float>(samples);
+  return offsets;
+}
+
+bool hasArea(const Light& light) { return light.kind == Light::Kind::kArea && light.area > 0; }
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(const scene::Scene& s, const ShadowOptions& options)
+      : scene(s),
+        shadows(options),
+        surface(Program::draw("surface.vert.glsl", "surface.frag.glsl")),
+        depth_only(Program::draw("surface.vert.glsl", "depth.frag.glsl")),
+        tone(Program::draw("fullscreen.vert.glsl", "tone.frag.glsl")),
+        fxaa(Program::draw("fullscreen.vert.glsl", "fxaa.frag.glsl")),
+        white(whiteArray()),
+        reflected(reflectedTable()),
+        none(VertexArray::make()),
+        lights_buffer(0) {}
+
+  /// Which of the frame's lights changed, with shadow maps drawn for them.
+  std::vector<std::uint8_t> updateLights(const FrameSettings& frame);
+  void relight(std::span<const std::uint8_t> changed);
+  void drawSurfaces(const FrameSettings& frame);
+  void setSize(IVec2 size);
+  const Texture& values() const { return relighting ? relighting->pages() : value ? value : white; }
+
+  GpuScene scene;
+  ShadowMaps shadows;
+  Program surface, depth_only, tone, fxaa;
+  Texture white, reflected, value, label, bent, obscurance;
+  std::optional<TexelPass> irradiance;
+  std::optional<Relighting> relighting;
+  VertexArray none;
+  Buffer lights_buffer;
+  std::size_t lights_room = 0;
+  Vec3 without_label{0.2f};
+  LightSet shown;  ///< whose shadows and factors are current
+  Vec2 shown_sample{-1};
+  bool stale = true;  ///< all shadows and factors
+  bool strength_changed = true;
+  IVec2 size{0, 0};
+  Texture colour, depth, toned, small;
+  Framebuffer target, toned_target, small_target;
+  PassTimer timer;
+};
+
+std::vector<std::uint8_t> Renderer::Impl::updateLights(const FrameSettings& frame) {
+  bool all_anew = false;
+  const std::vector<int> layers = shadows.layers(frame.lights, all_anew);
+  all_anew |= stale || shown.size() != frame.lights.size();
+  if (relighting && frame.lights.size() > lights_room) all_anew = true;
+  std::vector<std::uint8_t> changed(frame.lights.size(), 1);
+  strength_changed = all_anew;
+  std::vector<GpuLight> packed;
+  for (std::size_t i = 0; i < frame.lights.size(); ++i) {
+    const Light& light = frame.lights[i];
+    packed.push_back(toGpu(light, layers[i], pointOn(light, frame.area_sample)));
+    if (all_anew) continue;
+    changed[i] = !sameButStrength(light, shown[i]) || (hasArea(light) && frame.area_sample != shown_sample);
+    strength_changed |= changed[i] || light.colour * light.intensity != shown[i].colour * shown[i].intensity;
+  }
+  if (packed.size() > lights_room || !lights_buffer.bytes()) {
+    lights_room = std::max<std::size_t>(packed.size(), 8);
+    lights_buffer = Buffer(lights_room * sizeof(GpuLight));
+  }
+  lights_buffer.write(0, packed.size() * sizeof(GpuLight), packed.data());
+  const TimedPass pass(timer, "shadows");
+  for (std::size_t i = 0; i < frame.lights.size(); ++i)
+    if (changed[i])
+      shadows.draw(scene, frame.lights[i], pointOn(frame.lights[i], frame.area_sample), layers[i]);
+  shown = frame.lights;
+  shown_sample = frame.area_sample;
+  stale = false;
+  return changed;
+}
+
+void Renderer::Impl::relight(std::span<const std::uint8_t> changed) {
+  if (!relighting || !strength_changed) return;
+  lights_buffer.bindStorage(1);
+  shadows.bind(relighting->factors());
+  relighting->run(changed, timer);
+}
+
+void Renderer::Impl::setSize(IVec2 wanted) {
+  if (wanted == size) return;
+  size = wanted;
+  colour = Texture::make2d(GL_RGBA32F, size);
+  colour.plain(true);
+  depth = Texture::make2d(GL_DEPTH_COMPONENT32F, size);
+  target = Framebuffer::make();
+  target.attach(GL_COLOR_ATTACHMENT0, colour);
+  target.attach(GL_DEPTH_ATTACHMENT, depth);
+  toned = {};
+}
+
+void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
+  setSize(frame.size);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
+  glViewport(0, 0, size.x, size.y);
+  const GLfloat clear[4] = {frame.background.x, frame.background.y, frame.background.z, 1};
+  const GLfloat far = 0.0f;
+  glDepthMask(GL_TRUE);
+  glClearBufferfv(GL_COLOR, 0, clear);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthFunc(GL_GREATER);
+
+  const Vec2 extent(static_cast<float>(size.x), static_cast<float>(size.y));
+  // A sample to the right of the centre sees what a picture moved to the left shows there.
+  const Mat4 clip = clipFromWorld(frame.camera, scene.bounds(), extent.x / extent.y,
+                                  Vec2(-2.0f, 2.0f) * frame.jitter / extent);
+  scene.bind();
+  std::vector<const GpuScene::Drawn*> solid, clear_ones;
+  for (const GpuScene::Drawn& d : scene.drawn())
+    if (mayBeSeen(d.box, clip)) (d.translucent ? clear_ones : solid).push_back(&d);
+  const Point eye(frame.camera.world_from_camera[3]);
+  std::stable_sort(clear_ones.begin(), clear_ones.end(), [&](const auto* a, const auto* b) {
+    return glm::distance(a->box.centre(), eye) > glm::distance(b->box.centre(), eye);
+  });
+  {
+    const TimedPass pass(timer, "depth");
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    depth_only.use();
+    depth_only.set("u_clip_from_world", clip);
+    for (const GpuScene::Drawn* d : solid) scene.draw(*d, depth_only, false);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+  const TimedPass pass(timer, "surfaces");
+  glDepthFunc(GL_GEQUAL);
+  glDepthMask(GL_FALSE);
+  lights_buffer.bindStorage(1);
+  shadows.bind(surface);
+  values().bind(kValueUnit);
+  (label ? label : white).bind(kLabelUnit);
+  (bent ? bent : white).bind(kBentUnit);
+  (obscurance ? obscurance : white).bind(kObscuranceUnit);
+  reflected.bind(kReflectedUnit);
+  surface.use();
+  surface.set("u_clip_from_world", clip);
+  surface.set("u_view", static_cast<int>(frame.view));
+  surface.set("u_light_count", static_cast<int>(frame.lights.size()));
+  surface.set("u_full_materials", frame.full_materials ? 1u : 0u);
+  surface.set("u_eye", eye);
+  surface.set("u_forward", -glm::normalize(Vec3(frame.camera.world_from_camera[2])));
+  surface.set("u_orthographic", frame.camera.ortho_height > 0 ? 1u : 0u);
+  surface.set("u_ambient", frame.ambient.rgb);
+  surface.set("u_beta", frame.beta);
+  surface.set("u_without_label", without_label);
+  surface.set("u_direct_gain", frame.direct_gain);
+  surface.set("u_indirect_gain", frame.indirect_gain);
+  surface.set("u_obscurance_gain", obscurance ? frame.obscurance_gain : 0.0f);
+  const auto draw = [&](const GpuScene::Drawn& d) {
+    surface.set("u_page", d.page);
+    surface.set("u_has_tangents", d.tangents ? 1u : 0u);
+    surface.set("u_mirror", d.mirrored ? -1.0f : 1.0f);
+    scene.draw(d, surface, true);
+  };
+  for (const GpuScene::Drawn* d : solid) draw(*d);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  for (const GpuScene::Drawn* d : clear_ones) draw(*d);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+}
+
+Renderer::Renderer(const scene::Scene& scene, const ShadowOptions& shadows) {
+  requireOpenGl();
+  impl_ = std::make_unique<Impl>(scene, shadows);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::setValues(const asset::AtlasTable& atlas, const asset::Plane& plane) {
+  impl_->relighting.reset();
+  impl_->value = planeTexture(atlas, plane);
+}
+void Renderer::setBent(const asset::AtlasTable& atlas, const asset::Plane& plane) {
+  impl_->bent = planeTexture(atlas, plane);
+}
+void Renderer::setObscurance(const asset::AtlasTable& atlas, const asset::Plane& plane) {
+  impl_->obscurance = planeTexture(atlas, plane);
+}
+void Renderer::setLabels(const asset::AtlasTable& atlas, std::span<const Vec3> colours, Vec3 elsewhere) {
+  impl_->without_label = elsewhere;
+  impl_->label = labelTexture(atlas, colours);
+}
+void Renderer::setIrradiance(const asset::AtlasTable& atlas, std::span<const Irradiance> texels) {
+  impl_->relighting.reset();
+  asset::Plane plane{.name = "value", .channels = 3, .storage = asset::Storage::kFloat32, .values = {}};
+  plane.values.assign(3 * atlas.pageTexels(), 0.0f);
+  for (std::size_t i = 0; i < atlas.texel.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      plane.values[3 * atlas.texel[i] + static_cast<std::size_t>(c)] = texels[i].rgb[c];
+  impl_->value = planeTexture(atlas, plane);
+}
+void Renderer::setTransfer(const asset::Asset& asset, const asset::Layer& layer) {
+  impl_->relighting.reset();
+  impl_->relighting.emplace(asset, layer);
+  impl_->stale = true;
+}
+
+void Renderer::setManySamples(bool many) {
+  impl_->scene.setFilter(many ? TextureFilter::kBilinear : TextureFilter::kMipmaps);
+}
+
+void Renderer::place(std::uint32_t instance, const Mat4& world_from_local) {
+  for (std::size_t i = 0; i < impl_->scene.drawn().size(); ++i)
+    if (impl_->scene.drawn()[i].instance == instance)
+      impl_->scene.place(i, world_from_local), impl_->stale = true;
+}
+
+void Renderer::draw(const FrameSettings& frame) {
+  impl_->timer.beginFrame();
+  const std::vector<std::uint8_t> changed = impl_->updateLights(frame);
+  impl_->relight(changed);
+  impl_->drawSurfaces(frame);
+}
+
+image::Image Renderer::read() const {
+  const IVec2 size = impl_->size;
+  image::Image picture(size.x, size.y, 3), flipped(size.x, size.y, 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(impl_->colour.name(), 0, GL_RGB, GL_FLOAT,
+                    static_cast<GLsizei>(flipped.data.size() * sizeof(float)), flipped.data.data());
+  const auto row = static_cast<std::ptrdiff_t>(3 * size.x);
+  for (int y = 0; y < size.y; ++y)
+    std::copy_n(flipped.data.begin() + row * (size.y - 1 - y), row, picture.data.begin() + row * y);
+  return picture;
+}
+
+image::Image Renderer::picture(FrameSettings frame, int samples) {
+  setManySamples(samples > 1);
+  image::Image sum(frame.size.x, frame.size.y, 3);
+  const std::vector<Vec2> offsets = tentOffsets(samples);
+  for (int s = 0; s < samples; ++s) {
+    frame.jitter = offsets[static_cast<std::size_t>(s)];
+    if (samples > 1) frame.area_sample = sobol2(static_cast<std::uint32_t>(s), 0x51ed270bu);
+    draw(frame);
+    const image::Image one = read();
+    for (std::size_t i = 0; i < sum.data.size(); ++i) sum.data[i] += one.data[i];
+  }
+  for (float& v : sum.data) v /= static_cast<float>(samples);
+  return sum;
+}
+
+void Renderer::present(const Present& how) {
+  Impl& r = *impl_;
+  if (!r.toned) {
+    r.toned = Texture::make2d(GL_RGBA8, r.size);
+    r.toned.plain(true);
+    r.toned_target = Framebuffer::make();
+    r.toned_target.attach(GL_COLOR_ATTACHMENT0, r.toned);
+  }
+  const TimedPass pass(r.timer, "tone");
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glBindVertexArray(r.none.name());
+  glBindFramebuffer(GL_FRAMEBUFFER, r.toned_target.name());
+  glViewport(0, 0, r.size.x, r.size.y);
+  r.colour.bind(0);
+  r.tone.use();
+  r.tone.set("u_scale", std::exp2(how.exposure_stops));
+  r.tone.set("u_filmic", how.filmic ? 1u : 0u);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindFramebuffer(GL_FRAMEBUFFER, how.framebuffer);
+  glViewport(how.origin.x, how.origin.y, r.size.x, r.size.y);
+  r.toned.bind(0);
+  r.fxaa.use();
+  r.fxaa.set("u_pixel", 1.0f / Vec2(r.size));
+  r.fxaa.set("u_smooth", how.fxaa ? 1u : 0u);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+image::Image Renderer::thumbnail() {
+  Impl& r = *impl_;
+  if (!r.small) {
+    r.small = Texture::make2d(GL_RGBA32F, {kThumbnailWidth, kThumbnailHeight});
+    r.small_target = Framebuffer::make();
+    r.small_target.attach(GL_COLOR_ATTACHMENT0, r.small);
+  }
+  glBlitNamedFramebuffer(r.target.name(), r.small_target.name(), 0, 0, r.size.x, r.size.y, 0, 0,
+                         kThumbnailWidth, kThumbnailHeight, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  image::Image out(kThumbnailWidth, kThumbnailHeight, 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(r.small.name(), 0, GL_RGB, GL_FLOAT,
+                    static_cast<GLsizei>(out.data.size() * sizeof(float)), out.data.data());
+  return out;
+}
+
+std::vector<PassTime> Renderer::times() const { return impl_->timer.times(); }
+std::vector<Irradiance> Renderer::readEntries() const {
+  return impl_->relighting ? impl_->relighting->readEntries() : std::vector<Irradiance>();
+}
+std::vector<Irradiance> Renderer::readTexels() const {
+  return impl_->relighting ? impl_->relighting->readTexels() : std::vector<Irradiance>();
+}
+std::size_t Renderer::sampleBytes() const { return impl_->relighting ? impl_->relighting->sampleBytes() : 0; }
+
+}  // namespace relume::render

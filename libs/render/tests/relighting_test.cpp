@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Relighting on the device against the run-time library, where nothing throws shadows: entries, exits and
+// texels under every kind of light, and after lights have changed.
+#include <cmath>
+#include <random>
+
+#include "gl_test.h"
+#include "made_bake.h"
+#include "relume/relight/transfer_relighter.h"
+#include "relume/render/renderer.h"
+
+namespace relume::render {
+namespace {
+
+using RelightingTest = GlTest;
+
+LightSet someLights(std::size_t count) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> unit;
+  LightSet lights(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Light& l = lights[i];
+    l.kind = static_cast<Light::Kind>(i % 4);
+    l.colour = {unit(random), unit(random), unit(random)};
+    l.intensity = 10 * unit(random);
+    l.position = Vec3(4, 3, 5) * Vec3(unit(random), unit(random), unit(random));
+    l.direction = glm::normalize(Vec3(unit(random) - 0.5f, -1, unit(random) - 0.5f));
+    l.range = i % 3 == 0 ? 4 : kInfinity;
+    l.inner_cone = 0.2f, l.outer_cone = 0.9f;
+    l.area = 0.1f + unit(random);
+    l.two_sided = i % 8 == 3;
+  }
+  return lights;
+}
+
+void expectSame(std::span<const Irradiance> got, std::span<const Irradiance> expected, const char* what) {
+  ASSERT_EQ(got.size(), expected.size()) << what;
+  double error = 0, norm = 0;
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    error += std::pow(glm::length(got[i].rgb - expected[i].rgb), 2);
+    norm += std::pow(glm::length(expected[i].rgb), 2);
+  }
+  ASSERT_GT(norm, 0) << what;
+  // The run-time rounds coefficients to 16 bits of the largest.
+  EXPECT_LT(std::sqrt(error / norm), 2e-4) << what;
+}
+
+void expectRunTimes(Renderer& renderer, relight::TransferRelighter& relighter, const LightSet& lights,
+                    const char* what) {
+  SCOPED_TRACE(what);
+  FrameSettings frame;
+  frame.size = {8, 8};
+  frame.lights = lights;
+  renderer.draw(frame);
+  const auto entries = relighter.entryIrradiance(lights);
+  expectSame(renderer.readEntries(), entries, "entries");
+  relighter.relight(entries);
+  expectSame(renderer.readTexels(), relighter.texels(), "texels");
+}
+
+TEST_F(RelightingTest, IsThatOfTheRunTime) {
+  asset::Asset bake = relight::madeBake({.columns = 90}, 4, 5);
+  for (const bool short_ways : {false, true}) {
+    SCOPED_TRACE(short_ways ? "without short ways" : "whole");
+    if (short_ways) {
+      asset::Transfer transfer = asset::readTransfer(bake.layers[0], bake.atlas);
+      for (std::size_t i = 0; i < bake.atlas.texel.size(); ++i)
+        transfer.near_share.push_back(Vec3(i % 3, i % 5, 0) * (51.0f / 255));
+      bake.layers[0].tables = asset::transferTables(transfer, bake.atlas);
+    }
+    relight::TransferRelighter relighter(bake, bake.layers[0]);
+    const scene::Scene nothing;
+    Renderer renderer(nothing, {.cube_size = 64, .plane_size = 64});
+    renderer.setTransfer(bake, bake.layers[0]);
+    LightSet lights = someLights(5);
+    expectRunTimes(renderer, relighter, lights, "first");
+    lights[2].colour = {1, 0, 3};
+    expectRunTimes(renderer, relighter, lights, "another colour");
+    lights[0].position.x += 1;
+    expectRunTimes(renderer, relighter, lights, "moved");
+    lights = someLights(23);
+    expectRunTimes(renderer, relighter, lights, "more lights");
+    lights.resize(2);
+    expectRunTimes(renderer, relighter, lights, "fewer lights");
+    expectRunTimes(renderer, relighter, lights, "the same");
+  }
+}
+
+TEST_F(RelightingTest, RefusesWhatIsNoTransfer) {
+  asset::Asset bake = relight::madeBake({.columns = 10});
+  bake.layers[0].tables.clear();
+  Renderer renderer(scene::Scene{}, {.cube_size = 64, .plane_size = 64});
+  EXPECT_THROW(renderer.setTransfer(bake, bake.layers[0]), Error);
+}
+
+}  // namespace
+}  // namespace relume::render

@@ -1,0 +1,187 @@
+// What a surface shows. With k = albedo / pi, W the baked value, E the direct irradiance of visible lights, I the
+// relit indirect irradiance: the pictures of libs/picture (its src/shader.cpp), which rays make; and with
+// u_full_materials glTF's metallic-roughness lobes under E, and normal maps.
+#include "material.glsl"
+#include "lights.glsl"
+#include "ggx.glsl"
+#include "shadows.glsl"
+
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_tangent;
+in vec4 v_uv01;
+in vec4 v_uv23;
+in vec4 v_colour;
+
+layout(std430, binding = 1) readonly buffer Lights { Light lights[]; };
+layout(binding = 4) uniform sampler2DArray u_value;      // the layer's value, or relit irradiance, on the atlas
+layout(binding = 5) uniform sampler2DArray u_label;      // colours of charts, or of validity; alpha 0: no texel
+layout(binding = 6) uniform sampler2DArray u_bent;       // bent normals
+layout(binding = 7) uniform sampler2D u_reflected;       // GGX: scale and bias of the directional albedo
+layout(binding = 10) uniform sampler2DArray u_obscurance; // W, for what moves the indirect light
+
+uniform uint u_material;
+uniform int u_page;            // of the atlas; negative: the surface has no bake
+uniform int u_view;
+uniform int u_light_count;
+uniform uint u_full_materials;
+uniform vec3 u_eye;
+uniform vec3 u_forward;
+uniform uint u_orthographic;
+uniform vec3 u_ambient;        // irradiance
+uniform float u_beta;
+uniform vec3 u_without_label;
+uniform float u_direct_gain, u_indirect_gain, u_obscurance_gain;
+uniform uint u_has_tangents;
+uniform float u_mirror;        // -1 where the transform mirrors
+
+layout(location = 0) out vec4 o_colour;
+
+const int kObscurance = 0, kOcclusion = 1, kLit = 2, kLightmap = 3, kRelit = 4, kIndirect = 5, kAlbedo = 6, kNormal = 7,
+          kBentNormal = 8, kTexels = 9, kLabels = 10, kDirect = 11;
+const vec3 kWithoutBake = vec3(1.0, 0.0, 1.0);
+
+float parity(vec2 p) {
+  vec2 cell = floor(p);
+  return mod(abs(cell.x + cell.y), 2.0);
+}
+
+vec3 checker(vec2 texel) {
+  vec3 hue = parity(texel / 8.0) >= 1.0 ? vec3(1.0, 0.75, 0.4) : vec3(0.4, 0.75, 1.0);
+  return hue * (parity(texel) >= 1.0 ? 1.0 : 0.45);
+}
+
+// The normal of the surface's detail, on the side of n; n where there is none.
+vec3 detailNormal(Material m, vec3 n) {
+  if (m.normal.present == 0u) return n;
+  vec2 uv = uvOf(m.normal, v_uv01, v_uv23);
+  vec3 t;
+  float hand;
+  if (u_has_tangents != 0u) {
+    t = v_tangent.xyz;
+    hand = (v_tangent.w < 0.0 ? -1.0 : 1.0) * u_mirror;
+  } else {
+    // v runs downwards in glTF, so the bitangent is minus dp/dv.
+    vec3 px = dFdx(v_position), py = dFdy(v_position);
+    vec2 sx = dFdx(uv), sy = dFdy(uv);
+    float area = sx.x * sy.y - sx.y * sy.x;
+    if (abs(area) == 0.0) return n;
+    t = (px * sy.y - py * sx.y) / area;
+    vec3 b = -(py * sx.x - px * sy.x) / area;
+    hand = dot(cross(n, t), b) < 0.0 ? -1.0 : 1.0;
+  }
+  t -= dot(t, n) * n;
+  float l = length(t);
+  if (!(l > 0.0)) return n;
+  t /= l;
+  vec3 local = 2.0 * texture(u_normal, uv).xyz - 1.0;
+  local.xy *= m.normal_scale;
+  return normalize(local.x * t + local.y * hand * cross(n, t) + local.z * n);
+}
+
+void main() {
+  Material m = materials[u_material];
+  vec4 base = m.base_colour * v_colour;
+  if (m.base.present != 0u) base *= texture(u_base, uvOf(m.base, v_uv01, v_uv23));
+  if (m.alpha_mode == kAlphaMask && base.a < m.alpha_cutoff) discard;
+  float opacity = m.alpha_mode == kAlphaBlend ? clamp(base.a, 0.0, 1.0) : 1.0;
+
+  float metallic = m.metallic, roughness = m.roughness;
+  if (m.metallic_roughness.present != 0u) {
+    vec4 texel = texture(u_metallic_roughness, uvOf(m.metallic_roughness, v_uv01, v_uv23));
+    roughness *= texel.g;
+    metallic *= texel.b;
+  }
+  vec3 emission = m.emission_alpha.rgb;
+  if (m.emission.present != 0u) emission *= texture(u_emission, uvOf(m.emission, v_uv01, v_uv23)).rgb;
+
+  vec3 to_viewer = u_orthographic != 0u ? -u_forward : normalize(u_eye - v_position);
+  // Surfaces are lit on the side from which they are seen.
+  vec3 ng = normalize(cross(dFdx(v_position), dFdy(v_position)));
+  if (dot(ng, to_viewer) < 0.0) ng = -ng;
+  float length_n = length(v_normal);
+  vec3 n = length_n > 0.0 ? v_normal / length_n : ng;
+  if (dot(n, ng) < 0.0) n = -n;
+
+  vec2 atlas_uv = v_uv01.zw;
+  bool baked = u_page >= 0;
+  vec3 place = vec3(atlas_uv, float(max(u_page, 0)));
+  vec3 value = baked ? texture(u_value, place).rgb : vec3(1.0);
+  float headlight = 0.4 + 0.6 * abs(dot(n, to_viewer));
+
+  vec3 colour;
+  if (u_view == kAlbedo) {
+    colour = m.unlit != 0u ? vec3(0.0) : base.rgb * (1.0 - metallic);
+  } else if (u_view == kNormal) {
+    // By winding, as data; not the side that is seen.
+    vec3 outside = gl_FrontFacing == (u_mirror > 0.0) ? ng : -ng;
+    vec3 shown = dot(n, outside) < 0.0 ? -n : n;
+    colour = 0.5 * (shown + 1.0);
+  } else if (u_view == kOcclusion) {
+    colour = value;
+  } else if (u_view == kBentNormal) {
+    vec3 bent = baked ? texture(u_bent, place).xyz : n;
+    float l = length(bent);
+    colour = 0.5 * ((l > 1e-6 ? bent / l : n) + 1.0);
+  } else if (u_view == kTexels) {
+    colour = baked ? (0.2 + 0.8 * value) * checker(atlas_uv * vec2(textureSize(u_value, 0).xy)) : kWithoutBake * headlight;
+  } else if (u_view == kLabels) {
+    ivec3 size = textureSize(u_label, 0);
+    ivec2 texel = clamp(ivec2(atlas_uv * vec2(size.xy)), ivec2(0), size.xy - 1);
+    vec4 label = baked ? texelFetch(u_label, ivec3(texel, max(u_page, 0)), 0) : vec4(0.0);
+    colour = (label.a > 0.0 ? label.rgb : u_without_label) * headlight;
+  } else if (m.unlit != 0u) {
+    colour = base.rgb + emission;
+  } else {
+    bool full = u_full_materials != 0u;
+    vec3 nd = full ? detailNormal(m, n) : n;
+    if (dot(nd, ng) <= 0.0) nd = n;
+    float cos_o = max(dot(nd, to_viewer), kLeastCosine);
+    Lobes lobes;
+    if (full) {
+      float alpha = clamp(roughness * roughness, kLeastAlpha, 1.0);
+      // Entries of the table lie at squares, its first and last at the middles of texels.
+      vec2 at = (sqrt(vec2(cos_o, alpha)) * 31.0 + 0.5) / 32.0;
+      lobes = lobesOf(base.rgb, clamp(metallic, 0.0, 1.0), roughness, texture(u_reflected, at).xy);
+    }
+    vec3 direct = vec3(0.0), glossy = vec3(0.0), incident = vec3(0.0);
+    if (u_view == kLit || u_view == kRelit || u_view == kDirect) {
+      for (int i = 0; i < u_light_count; ++i) {
+        Light light = lights[i];
+        float r;
+        vec3 way = wayTo(light, v_position, r);
+        float factor = incidentFactor(light, way, r);
+        incident += factor * light.strength_area.rgb;
+        float cos_i = dot(nd, way);
+        if (factor <= 0.0 || cos_i <= 0.0 || dot(ng, way) <= 0.0) continue;
+        vec3 e = light.strength_area.rgb * (factor * cos_i * visibility(light, v_position, ng));
+        direct += e;
+        if (full) glossy += e * specularLobe(lobes, nd, way, to_viewer, cos_i, cos_o);
+      }
+    }
+    vec3 indirect = u_ambient;
+    if (u_view == kLightmap) {
+      direct = baked ? value : u_ambient;
+      indirect = vec3(0.0);
+    } else if (u_view == kRelit || u_view == kIndirect) {
+      indirect += baked ? value * u_indirect_gain : vec3(0.0);
+    } else if (u_view == kDirect) {
+      indirect = vec3(0.0);
+    } else if (baked) {
+      if (u_view == kLit) indirect += u_beta * incident;
+      indirect *= value;
+    } else {
+      direct = vec3(0.0), glossy = vec3(0.0);
+    }
+    if (u_obscurance_gain > 0.0 && baked) indirect *= mix(vec3(1.0), texture(u_obscurance, place).rgb, u_obscurance_gain);
+    direct *= u_direct_gain;
+    glossy *= u_direct_gain;
+    vec3 seen = u_view == kIndirect ? vec3(0.0) : emission;
+    if (full && u_view != kIndirect)
+      // Indirect light has no direction here: the glossy lobes take it as coming from all sides alike.
+      colour = (lobes.diffuse * (direct + indirect) + lobes.glossy * indirect) * kInvPi + glossy + seen;
+    else
+      colour = base.rgb * (direct + indirect) * kInvPi + seen;
+  }
+  o_colour = vec4(colour, opacity);
+}
