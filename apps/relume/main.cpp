@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
   relume::app::addExport(app, program);
   relume::app::addCompare(app, program);
   relume::app::addVerify(app, program);
+  relume::app::addView(app, program);
   relume::setReplayCommand(program.command_line);
 
   try {

@@ -76,7 +76,10 @@ struct Renderer::Impl {
   void relight(std::span<const std::uint8_t> changed);
   void drawSurfaces(const FrameSettings& frame);
   void setSize(IVec2 size);
-  const Texture& values() const { return relighting ? relighting->pages() : value ? value : white; }
+  const Texture& values(View view) const {
+    const bool relit = view == View::kRelit || view == View::kIndirect;
+    return relit && relighting ? relighting->pages() : value ? value : white;
+  }
 
   GpuScene scene;
   ShadowMaps shadows;
@@ -187,7 +190,7 @@ void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
   glDepthMask(GL_FALSE);
   lights_buffer.bindStorage(1);
   shadows.bind(surface);
-  values().bind(kValueUnit);
+  values(frame.view).bind(kValueUnit);
   (label ? label : white).bind(kLabelUnit);
   (bent ? bent : white).bind(kBentUnit);
   (obscurance ? obscurance : white).bind(kObscuranceUnit);
@@ -228,7 +231,6 @@ Renderer::Renderer(const scene::Scene& scene, const ShadowOptions& shadows) {
 Renderer::~Renderer() = default;
 
 void Renderer::setValues(const asset::AtlasTable& atlas, const asset::Plane& plane) {
-  impl_->relighting.reset();
   impl_->value = planeTexture(atlas, plane);
 }
 void Renderer::setBent(const asset::AtlasTable& atlas, const asset::Plane& plane) {

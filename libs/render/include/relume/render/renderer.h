@@ -88,8 +88,8 @@ class Renderer {
   void setLabels(const asset::AtlasTable& atlas, std::span<const Vec3> colours, Vec3 elsewhere);
   /// Irradiance by texel of the table.
   void setIrradiance(const asset::AtlasTable& atlas, std::span<const Irradiance> texels);
-  /// Values come from relighting this layer of transfer at every frame from now on. Throws Error kMismatch,
-  /// kCorruptAsset (asset/transfer.h), kUnsupported where the device cannot hold it.
+  /// In the views kRelit and kIndirect values come from relighting this layer from now on. Throws Error
+  /// kMismatch, kCorruptAsset (asset/transfer.h), kUnsupported where the device cannot hold it.
   void setTransfer(const asset::Asset& asset, const asset::Layer& layer);
 
   /// One sample a pixel with mipmaps, or samples of many frames without (scene/scene.h looks textures up so).

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/panels.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "relume/image/image.h"
+
+namespace relume::app {
+namespace {
+
+constexpr float kPanelWidth = 320;
+constexpr float kHandle = 8;  // pixels
+
+const char* kindName(Light::Kind kind) {
+  switch (kind) {
+    case Light::Kind::kPoint:
+      return "point";
+    case Light::Kind::kSpot:
+      return "spot";
+    case Light::Kind::kDirectional:
+      return "directional";
+    case Light::Kind::kArea:
+      return "area";
+  }
+  return "";
+}
+
+/// As a display shows it.
+ImU32 shown(Vec3 colour, float alpha) {
+  const float most = std::max({colour.x, colour.y, colour.z, 1e-6f});
+  const auto channel = [&](float v) { return image::linearToSrgb(v / most); };
+  return ImGui::ColorConvertFloat4ToU32(
+      ImVec4(channel(colour.x), channel(colour.y), channel(colour.z), alpha));
+}
+
+void lightFields(Light& light) {
+  ImGui::ColorEdit3("colour", &light.colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs);
+  const char* unit = light.kind == Light::Kind::kDirectional ? "%.2f lux"
+                     : light.kind == Light::Kind::kArea      ? "%.2f W/(m2 sr)"
+                                                             : "%.2f cd";
+  ImGui::DragFloat("intensity", &light.intensity, 0.01f * std::max(light.intensity, 0.1f), 0, 1e6f, unit);
+  if (light.kind != Light::Kind::kDirectional) ImGui::DragFloat3("position, m", &light.position.x, 0.02f);
+  if (light.kind == Light::Kind::kPoint) return;
+  Vec3 direction = light.direction;
+  if (ImGui::DragFloat3("direction", &direction.x, 0.01f) && glm::length(direction) > 1e-3f)
+    light.direction = glm::normalize(direction);
+  if (light.kind == Light::Kind::kArea) ImGui::DragFloat("area, m2", &light.area, 0.01f, 1e-4f, 1e3f);
+}
+
+void lightsPanel(Stage& stage) {
+  LightSet& lights = stage.frame.lights;
+  if (ImGui::Button("add a lamp")) stage.addLight();
+  ImGui::SameLine();
+  const bool any = stage.selected >= 0 && stage.selected < static_cast<int>(lights.size());
+  if (ImGui::Button("delete") && any) {
+    lights.erase(lights.begin() + stage.selected);
+    stage.selected = -1;
+    return;
+  }
+  ImGui::BeginChild("list", ImVec2(0, std::min(140.0f, 24.0f + 20.0f * static_cast<float>(lights.size()))),
+                    true);
+  for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
+    const Light& l = lights[static_cast<std::size_t>(i)];
+    const std::string label = fmt::format(
+        "{} ({})##{}", l.name.empty() ? fmt::format("light {}", i + 1) : l.name, kindName(l.kind), i);
+    if (ImGui::Selectable(label.c_str(), stage.selected == i)) stage.selected = i;
+  }
+  ImGui::EndChild();
+  if (any && stage.selected >= 0) lightFields(lights[static_cast<std::size_t>(stage.selected)]);
+}
+
+void timesPanel(const Stage& stage, const PanelState& state) {
+  const std::vector<float> history(state.frame_ms.begin(), state.frame_ms.end());
+  if (history.empty()) return;
+  float mean = 0;
+  for (const float ms : history) mean += ms / static_cast<float>(history.size());
+  const float most = *std::max_element(history.begin(), history.end());
+  const std::string overlay = fmt::format("{:.1f} ms, {:.1f} frames/s", mean, 1000 / mean);
+  ImGui::PlotLines("##frames", history.data(), static_cast<int>(history.size()), 0, overlay.c_str(), 0,
+                   1.2f * most, ImVec2(ImGui::GetContentRegionAvail().x, 60));
+  double sum = 1e-9;
+  for (const render::PassTime& pass : stage.times()) sum += pass.seconds;
+  for (const render::PassTime& pass : stage.times())
+    ImGui::ProgressBar(static_cast<float>(pass.seconds / sum), ImVec2(-1, 14),
+                       fmt::format("{} {:.2f} ms", pass.name, 1e3 * pass.seconds).c_str());
+}
+
+void helpWindow(PanelState& state) {
+  ImGui::SetNextWindowSize(ImVec2(430, 0), ImGuiCond_Appearing);
+  ImGui::SetNextWindowPos(ImVec2(0.5f * ImGui::GetIO().DisplaySize.x, 0.5f * ImGui::GetIO().DisplaySize.y),
+                          ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+  if (ImGui::Begin("Keys and mouse", &state.help, ImGuiWindowFlags_NoCollapse)) {
+    constexpr const char* kRows[][2] = {
+        {"left mouse", "turn about what is looked at; on a handle: move the light"},
+        {"right mouse", "look about"},
+        {"wheel", "nearer, farther"},
+        {"W A S D", "walk"},
+        {"Q E", "down, up; with Shift all five times as fast"},
+        {"1 to 9", "views"},
+        {"Tab", "panels on and off"},
+        {"L", "a new lamp in front of the camera"},
+        {"Delete", "the chosen lamp"},
+        {"P", "screenshot to a PNG file, without panels"},
+        {"R", "record: every frame to a PNG file, until R again"},
+        {"? or F1", "this page"},
+        {"drop a file", "open it"},
+        {"Esc", "end"}};
+    if (ImGui::BeginTable("keys", 2)) {
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 90);
+      for (const auto& row : kRows) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(row[0]);
+        ImGui::TableNextColumn();
+        ImGui::TextWrapped("%s", row[1]);
+      }
+      ImGui::EndTable();
+    }
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+void drawPanels(Stage& stage, PanelState& state) {
+  if (state.help) helpWindow(state);
+  if (!state.panels) return;
+  ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_Always);
+  ImGui::SetNextWindowSizeConstraints(ImVec2(kPanelWidth, 0),
+                                      ImVec2(kPanelWidth, ImGui::GetIO().DisplaySize.y - 16));
+  ImGui::Begin("relume view", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+  ImGui::PushItemWidth(170);
+  ImGui::TextWrapped("%s", stage.caption().c_str());
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##view", stage.views()[stage.view()].name)) {
+    for (std::size_t i = 0; i < stage.views().size(); ++i)
+      if (ImGui::Selectable(stage.views()[i].name, i == stage.view())) stage.choose(i);
+    ImGui::EndCombo();
+  }
+  if (ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen)) {
+    ImGui::SliderFloat("direct", &stage.frame.direct_gain, 0, 2);
+    ImGui::SliderFloat("indirect", &stage.frame.indirect_gain, 0, 2);
+    float ambient = stage.frame.ambient.rgb.x;
+    if (ImGui::SliderFloat("ambient", &ambient, 0, 4)) stage.frame.ambient = Irradiance(ambient);
+    ImGui::Checkbox("exposure by itself", &stage.auto_exposure);
+    ImGui::SliderFloat("exposure, stops", &stage.exposure, -12, 12);
+    ImGui::Checkbox("glossy materials, normal maps", &stage.frame.full_materials);
+    ImGui::Checkbox("smooth edges", &stage.fxaa);
+  }
+  if (ImGui::CollapsingHeader("Lamps", ImGuiTreeNodeFlags_DefaultOpen)) lightsPanel(stage);
+  if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) timesPanel(stage, state);
+  if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
+  ImGui::TextDisabled("? for help");
+  ImGui::PopItemWidth();
+  ImGui::End();
+}
+
+bool drawHandles(Stage& stage, Vec2 size) {
+  const picture::Viewpoint viewpoint = stage.camera.viewpoint();
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  const ImGuiIO& io = ImGui::GetIO();
+  const Vec2 mouse(io.MousePos.x, io.MousePos.y);
+  static int dragged = -1;
+  int nearest = -1;
+  float least = 2 * kHandle;
+  LightSet& lights = stage.frame.lights;
+  for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
+    const Light& l = lights[static_cast<std::size_t>(i)];
+    if (l.kind == Light::Kind::kDirectional) continue;
+    const Vec3 at = project(viewpoint, size, l.position);
+    if (!(at.z > 0)) continue;
+    const ImVec2 place(at.x, at.y);
+    list->AddCircleFilled(place, kHandle, shown(l.colour, 0.85f));
+    list->AddCircle(place, kHandle + (stage.selected == i ? 4.0f : 1.0f),
+                    stage.selected == i ? IM_COL32(255, 255, 255, 255) : IM_COL32(0, 0, 0, 180), 0, 2);
+    const float away = glm::distance(mouse, Vec2(at));
+    if (away < least) least = away, nearest = i;
+  }
+  if (!ImGui::IsMouseDown(0)) dragged = -1;
+  if (ImGui::IsMouseClicked(0) && !io.WantCaptureMouse && nearest >= 0) dragged = stage.selected = nearest;
+  if (dragged >= 0 && dragged < static_cast<int>(lights.size())) {
+    Light& l = lights[static_cast<std::size_t>(dragged)];
+    const float depth = project(viewpoint, size, l.position).z;
+    if (depth > 0 && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0))
+      l.position = unproject(viewpoint, size, Vec3(mouse, depth));
+  }
+  return dragged >= 0 || (nearest >= 0 && !io.WantCaptureMouse);
+}
+
+}  // namespace relume::app
