@@ -22,9 +22,7 @@ layout(binding = 10) uniform sampler2DArray u_obscurance; // W, for what moves t
 
 uniform uint u_material;
 uniform int u_page;            // of the atlas; negative: the surface has no bake
-uniform int u_view;
 uniform int u_light_count;
-uniform uint u_full_materials;
 uniform vec3 u_eye;
 uniform vec3 u_forward;
 uniform uint u_orthographic;
@@ -36,6 +34,10 @@ uniform uint u_has_tangents;
 uniform float u_mirror;        // -1 where the transform mirrors
 
 layout(location = 0) out vec4 o_colour;
+
+// Known when the program is made, so that a view costs what it shows and no more.
+const int u_view = VIEW;
+const uint u_full_materials = FULL;
 
 const int kObscurance = 0, kOcclusion = 1, kLit = 2, kLightmap = 3, kRelit = 4, kIndirect = 5, kAlbedo = 6, kNormal = 7,
           kBentNormal = 8, kTexels = 9, kLabels = 10, kDirect = 11;

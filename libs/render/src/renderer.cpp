@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "atlas_textures.h"
 #include "camera_matrix.h"
@@ -62,7 +65,6 @@ struct Renderer::Impl {
   Impl(const scene::Scene& s, const ShadowOptions& options)
       : scene(s),
         shadows(options),
-        surface(Program::draw("surface.vert.glsl", "surface.frag.glsl")),
         depth_only(Program::draw("surface.vert.glsl", "depth.frag.glsl")),
         tone(Program::draw("fullscreen.vert.glsl", "tone.frag.glsl")),
         fxaa(Program::draw("fullscreen.vert.glsl", "fxaa.frag.glsl")),
@@ -83,7 +85,11 @@ struct Renderer::Impl {
 
   GpuScene scene;
   ShadowMaps shadows;
-  Program surface, depth_only, tone, fxaa;
+  /// The program of a view, with glossy lobes or without; made when it is first asked for.
+  const Program& surfaceFor(const FrameSettings& frame);
+
+  std::map<std::pair<View, bool>, Program> surfaces;
+  Program depth_only, tone, fxaa;
   Texture white, reflected, value, label, bent, obscurance;
   std::optional<TexelPass> irradiance;
   std::optional<Relighting> relighting;
@@ -150,6 +156,15 @@ void Renderer::Impl::setSize(IVec2 wanted) {
   toned = {};
 }
 
+const Program& Renderer::Impl::surfaceFor(const FrameSettings& frame) {
+  Program& program = surfaces[{frame.view, frame.full_materials}];
+  if (!program)
+    program = Program::draw("surface.vert.glsl", "surface.frag.glsl",
+                            "#define VIEW " + std::to_string(static_cast<int>(frame.view)) +
+                                "\n#define FULL " + (frame.full_materials ? "1u\n" : "0u\n"));
+  return program;
+}
+
 void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
   setSize(frame.size);
   glBindFramebuffer(GL_FRAMEBUFFER, target.name());
@@ -188,6 +203,7 @@ void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
   const TimedPass pass(timer, "surfaces");
   glDepthFunc(GL_GEQUAL);
   glDepthMask(GL_FALSE);
+  const Program& surface = surfaceFor(frame);
   lights_buffer.bindStorage(1);
   shadows.bind(surface);
   values(frame.view).bind(kValueUnit);
@@ -197,9 +213,7 @@ void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
   reflected.bind(kReflectedUnit);
   surface.use();
   surface.set("u_clip_from_world", clip);
-  surface.set("u_view", static_cast<int>(frame.view));
   surface.set("u_light_count", static_cast<int>(frame.lights.size()));
-  surface.set("u_full_materials", frame.full_materials ? 1u : 0u);
   surface.set("u_eye", eye);
   surface.set("u_forward", -glm::normalize(Vec3(frame.camera.world_from_camera[2])));
   surface.set("u_orthographic", frame.camera.ortho_height > 0 ? 1u : 0u);
