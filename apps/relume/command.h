@@ -27,6 +27,7 @@ void addExport(CLI::App& app, Program& program);
 void addCompare(CLI::App& app, Program& program);
 void addVerify(CLI::App& app, Program& program);
 void addView(CLI::App& app, Program& program);
+void addRelief(CLI::App& app, Program& program);
 
 /// Options that belong to one command live as long as the program: the callback holds them.
 template <class Options, class Run>

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   relume::app::addCompare(app, program);
   relume::app::addVerify(app, program);
   relume::app::addView(app, program);
+  relume::app::addRelief(app, program);
   relume::setReplayCommand(program.command_line);
 
   try {

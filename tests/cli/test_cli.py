@@ -52,7 +52,7 @@ class CliTest(unittest.TestCase):
 class Usage(CliTest):
     def test_every_command_has_help_with_an_example(self):
         self.assertIn("Example: relume bake", relume("--help").stdout)
-        for command in ("bake", "relight", "render", "inspect", "export", "compare", "verify", "view"):
+        for command in ("bake", "relight", "render", "inspect", "export", "compare", "verify", "view", "relief"):
             self.assertIn(f"Example: relume {command}", relume(command, "--help").stdout, command)
 
     def assertFails(self, status, *args, says=()):

@@ -79,6 +79,17 @@ class Gl(test_cli.CliTest):
         self.assertFalse(out.exists())
 
 
+class Relief(test_cli.CliTest):
+    def test_maps_of_a_height_map(self):
+        heights = self.folder / "stones.png"
+        relume("render", self.scene, "-o", heights, "--view", "albedo", "--size", "64x32", "--spp", 1)
+        said = relume("relief", heights, "--depth", 0.1).stdout
+        for kind in ("normal", "cone", "occlusion"):
+            self.assertIn(f"stones-{kind}.png", said)
+            self.assertTrue((self.folder / f"stones-{kind}.png").exists())
+        self.assertIn("is not an", relume("relief", self.scene, expect=1).stderr)
+
+
 if __name__ == "__main__":
     test_cli.RELUME = str(pathlib.Path(sys.argv.pop(1)).resolve())
     unittest.main()
