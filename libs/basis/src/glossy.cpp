@@ -49,6 +49,12 @@ GlossyLobe GlossyLobe::widened(float sharpness) const {
   return ggx(normal_, outgoing_, std::sqrt(std::min(std::sqrt(0.5f / wide), 1.0f)), f0_);
 }
 
+float GlossyLobe::shareAbove(Normal n) const {
+  // The normal distribution, by the logistic one: right at both ends, a narrow lobe and an even one.
+  const float x = glm::dot(shape_.axis, n) * std::sqrt(shape_.sharpness);
+  return 1.0f / (1.0f + std::exp(-1.702f * x));
+}
+
 Vec3 GlossyLobe::evaluate(Direction incoming) const {
   const float n_l = glm::dot(normal_, incoming);
   if (!(n_l > 0)) return Vec3(0.0f);

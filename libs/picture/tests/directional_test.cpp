@@ -63,6 +63,24 @@ TEST(DirectionalLight, GlossIsTheLobeOfTheBasis) {
   EXPECT_GT(middleOf(scene, bake, Gloss::kPhong).x, diffuse);
 }
 
+/// The highlight of a lamp on the left is seen from the right.
+TEST(DirectionalLight, HighlightsFollowTheEye) {
+  Quad quad;
+  quad.material = matte(Vec3(0.5f));
+  quad.material.roughness = 0.473f, quad.material.metallic = 0.6f;
+  const scene::Scene scene = sceneOf({quad});
+  const asset::Asset bake = ahdBake(0.3f, 2, glm::normalize(Vec3(-1, 0, 1)));
+  const auto from = [&](float x, Gloss gloss) {
+    PictureOptions options = optionsOf(View::kLightmap);
+    options.gloss = gloss;
+    Viewpoint view = lookAt({0.5f + x, 0.5f, 1}, {0.5f, 0.5f, 0}, 0.8f);
+    view.ortho_height = 0.1f;
+    return onePixel(scene, &bake, view, options).x;
+  };
+  for (const Gloss gloss : {Gloss::kGgx, Gloss::kPhong}) EXPECT_GT(from(1, gloss), 2 * from(-1, gloss));
+  EXPECT_NEAR(from(1, Gloss::kNone), from(-1, Gloss::kNone), 1e-5f);
+}
+
 TEST(DirectionalLight, MapsAreLookedUpByChart) {
   Quad quad;
   quad.material = matte(Vec3(1.0f));

@@ -66,7 +66,8 @@ class AhdBasis final : public Basis {
   }
 
   Radiance glossy(const Receiver&, std::span<const float> c, const GlossyLobe& lobe) const override {
-    return Radiance(lobe.albedo() * triple(c, 0) * kInvPi + lobe.evaluate(triple(c, 2)) * triple(c, 1));
+    return Radiance(lobe.albedo() * triple(c, 0) * kInvPi +
+                    lobe.widened(kLightSharpness).evaluate(triple(c, 2)) * triple(c, 1));
   }
 
   std::vector<TexturePlane> planes(Packing) const override {

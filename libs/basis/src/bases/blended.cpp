@@ -2,7 +2,8 @@
 // "hl2", "cube", "dice": irradiance along a few directions, blended by weights that sum to 1 (ambient.h).
 // What is stored is such that E is exact along those directions of the cube and the dice; of hl2 it is scaled
 // so that E is exact on the surface as it is, where the three meet (an open sky would lose a fifth there).
-// Gloss: irradiance towards the mirror direction, as blurred as that is.
+// Gloss: irradiance towards the mirror direction, as blurred as that is, over what of it
+// the surface leaves open.
 #include <array>
 #include <cmath>
 
@@ -86,7 +87,11 @@ class BlendedBasis final : public PositiveBasis {
   }
 
   Radiance glossy(const Receiver& at, std::span<const float> c, const GlossyLobe& lobe) const override {
-    return Radiance(lobe.albedo() * irradiance(at, c, lobe.shape().axis).rgb * kInvPi);
+    const Direction mirrored = lobe.shape().axis;
+    const Irradiance e = irradiance(at, c, mirrored);
+    // What hl2 blends does not fall towards the horizon.
+    if (kSpace == Space::kSurface) return Radiance(lobe.albedo() * e.rgb * kInvPi);
+    return Radiance(lobe.albedo() * meanRadiance(e, mirrored, at));
   }
 
  private:

@@ -52,7 +52,7 @@ class DominantBasis final : public Basis {
     shValues(shape.axis, y);
     Vec3 rest = y[0] * triple(c, 2);
     for (std::size_t i = 1; i < kKept; ++i) rest += blur * y[i] * triple(c, 2 + i);
-    const Vec3 light = lobe.evaluate(triple(c, 1)) * triple(c, 0);
+    const Vec3 light = lobe.widened(kLightSharpness).evaluate(triple(c, 1)) * triple(c, 0);
     return Radiance(glm::max(lobe.albedo() * rest + light, Vec3(0.0f)));
   }
 

@@ -41,7 +41,8 @@ class FarCryBasis final : public Basis {
 
   Radiance glossy(const Receiver& at, std::span<const float> c, const GlossyLobe& lobe) const override {
     const Vec3 scale = perLobe(at, c);
-    return Radiance(scale * ((1 - c[6]) * kInvPi * lobe.albedo() + c[6] * lobe.evaluate(triple(c, 1))));
+    return Radiance(scale * ((1 - c[6]) * kInvPi * lobe.albedo() +
+                             c[6] * lobe.widened(kLightSharpness).evaluate(triple(c, 1))));
   }
 
   std::vector<TexturePlane> planes(Packing) const override {

@@ -94,7 +94,7 @@ class GaussianBasis final : public PositiveBasis {
     const Gaussian shape{at.frame.toLocal(world.axis), world.sharpness, world.amplitude};
     Vec3 sum(0.0f);
     for (std::size_t i = 0; i < triples(); ++i) sum += integral(product(this->lobe(i), shape)) * triple(c, i);
-    return Radiance(lobe.albedo() * sum);
+    return Radiance(lobe.albedo() * sum / lobe.shareAbove(at.normal));
   }
 
  private:

@@ -96,7 +96,8 @@ class HBasis final : public RatioBasis {
   }
 
   Radiance glossy(const Receiver& at, std::span<const float> c, const GlossyLobe& lobe) const override {
-    return Radiance(lobe.albedo() * irradiance(at, c, lobe.shape().axis).rgb * kInvPi);
+    const Direction mirrored = lobe.shape().axis;
+    return Radiance(lobe.albedo() * meanRadiance(irradiance(at, c, mirrored), mirrored, at));
   }
 
  protected:

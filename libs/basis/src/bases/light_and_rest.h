@@ -14,6 +14,10 @@ struct LightDirection {
   Direction direction{0, 0, 1};
   float share = 0;  ///< of light that agrees: 1 from one direction, 0 from all around, 1/2 from a hemisphere
 };
+/// A basis with one light says nothing of its size; gloss takes it for a Gaussian of this sharpness, 15
+/// degrees or so. As a point it leaves highlights as bright as a lamp's.
+inline constexpr float kLightSharpness = 12.0f;
+
 inline LightDirection lightDirection(std::span<const float> sh, Direction otherwise) {
   const Vec3 linear(luminance(triple(sh, 3)), luminance(triple(sh, 1)), luminance(triple(sh, 2)));
   const float length = glm::length(linear), all = luminance(triple(sh, 0));

@@ -49,7 +49,7 @@ class ShBasis final : public RatioBasis {
     return notNegative(shIrradiance(c, n).rgb);
   }
 
-  Radiance glossy(const Receiver&, std::span<const float> c, const GlossyLobe& lobe) const override {
+  Radiance glossy(const Receiver& at, std::span<const float> c, const GlossyLobe& lobe) const override {
     const Gaussian& shape = lobe.shape();
     // Means of Legendre's polynomials under the lobe: the recurrence upwards from the closed form of the
     // first, or for wide lobes, where that cancels, from its series.
@@ -62,7 +62,7 @@ class ShBasis final : public RatioBasis {
     shValues(shape.axis, std::span(y).first(triples()));
     Vec3 sum(0.0f);
     for (std::size_t i = 0; i < triples(); ++i) sum += blur[bandOf(i)] * y[i] * triple(c, i);
-    return Radiance(lobe.albedo() * glm::max(sum, Vec3(0.0f)));
+    return Radiance(lobe.albedo() * glm::max(sum, Vec3(0.0f)) / lobe.shareAbove(at.normal));
   }
 
  protected:

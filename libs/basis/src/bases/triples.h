@@ -20,6 +20,10 @@ inline void addTriple(std::span<double> numbers, std::size_t i, Vec3 v) {
 }
 /// Radiance times solid angle of what arrives.
 inline Vec3 flux(const Arrival& light) { return light.e.rgb / light.cosine; }
+/// Mean radiance of what gives the irradiance e along d, when none of it comes from below the surface.
+inline Vec3 meanRadiance(Irradiance e, Direction d, const Receiver& at) {
+  return e.rgb * (2 * kInvPi / (1 + std::max(glm::dot(d, at.normal), 0.0f)));
+}
 inline Irradiance notNegative(Vec3 e) { return Irradiance(glm::max(e, Vec3(0.0f))); }
 
 /// A basis of RGB triples that are stored half by half.

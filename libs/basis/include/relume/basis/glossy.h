@@ -29,6 +29,9 @@ class GlossyLobe {
   /// The shape of evaluate(), amplitude such that its integral is 1.
   const Gaussian& shape() const { return shape_; }
   Normal normal() const { return normal_; }
+  /// Share of shape() that lies on the side of n, about. A basis that knows no light from below a surface
+  /// divides by it: the lobe itself has nothing there.
+  float shareAbove(Normal n) const;
 
  private:
   enum class Kind : std::uint8_t { kGgx, kPhong };
