@@ -10,8 +10,9 @@ struct Material {
   vec4 base_colour;
   vec4 emission_alpha;  // radiance; w unused
   float metallic, roughness, normal_scale, alpha_cutoff;
-  uint alpha_mode, unlit, double_sided, height_mapped;
-  MapUse base, metallic_roughness, normal, emission;
+  uint alpha_mode, unlit, double_sided;
+  float height_scale;  // depth of the relief, a share of its map's width
+  MapUse base, metallic_roughness, normal, emission, height;
 };
 
 const uint kAlphaOpaque = 0u, kAlphaMask = 1u, kAlphaBlend = 2u;

@@ -5,6 +5,9 @@
 #include "lights.glsl"
 #include "ggx.glsl"
 #include "shadows.glsl"
+#if RELIEF
+#include "relief.glsl"
+#endif
 
 in vec3 v_position;
 in vec3 v_normal;
@@ -29,7 +32,9 @@ uniform uint u_orthographic;
 uniform vec3 u_ambient;        // irradiance
 uniform float u_beta;
 uniform vec3 u_without_label;
-uniform float u_direct_gain, u_indirect_gain, u_obscurance_gain;
+uniform float u_small_scale_gain;
+uniform uint u_relief_steps, u_relief_shadows;
+uniform float u_direct_gain, u_indirect_gain, u_obscurance_gain, u_bounce_gain;
 uniform uint u_has_tangents;
 uniform float u_mirror;        // -1 where the transform mirrors
 
@@ -52,6 +57,68 @@ vec3 checker(vec2 texel) {
   vec3 hue = parity(texel / 8.0) >= 1.0 ? vec3(1.0, 0.75, 0.4) : vec3(0.4, 0.75, 1.0);
   return hue * (parity(texel) >= 1.0 ? 1.0 : 0.45);
 }
+
+// Texture coordinates of the mesh, or of where the eye meets its relief; how they change from pixel to pixel is
+// told by the mesh, since those of the relief jump.
+vec4 g_uv01, g_uv23, g_x01, g_x23, g_y01, g_y23;
+
+void startCoordinates() {
+  g_uv01 = v_uv01, g_uv23 = v_uv23;
+  g_x01 = dFdx(v_uv01), g_x23 = dFdx(v_uv23);
+  g_y01 = dFdy(v_uv01), g_y23 = dFdy(v_uv23);
+}
+vec2 changeOf(MapUse map, vec4 by01, vec4 by23) { return uvOf(map, by01, by23) - map.offset; }
+
+#if RELIEF
+#define LOOK_UP(map, use) \
+  textureGrad(map, uvOf(use, g_uv01, g_uv23), changeOf(use, g_x01, g_x23), changeOf(use, g_y01, g_y23))
+
+struct Relief {
+  vec3 along_u, along_v;  // metres per unit of the height map's coordinates
+  vec3 place;             // of the map, and height
+  float depth;            // metres
+  vec3 normal;            // world
+  float open;             // share of W(alpha, gamma, h)
+};
+
+// Texture coordinates that a direction crosses while it rises by the whole depth.
+vec2 crossed(Relief r, vec3 way, vec3 n) {
+  vec3 g = cross(r.along_u, r.along_v);
+  vec2 uv = vec2(dot(cross(way, r.along_v), g), dot(cross(r.along_u, way), g)) / dot(g, g);
+  return uv * (r.depth / max(dot(way, n), kLeastRise));
+}
+
+Relief reliefOf(Material m, vec3 n, vec3 to_viewer) {
+  Relief r;
+  vec2 uv = uvOf(m.height, v_uv01, v_uv23), x = changeOf(m.height, g_x01, g_x23), y = changeOf(m.height, g_y01, g_y23);
+  vec3 px = dFdx(v_position), py = dFdy(v_position);
+  float area = x.x * y.y - x.y * y.x;
+  r.place = vec3(uv, 1.0), r.normal = n, r.open = 1.0, r.depth = 0.0;
+  if (area == 0.0) return r;
+  r.along_u = (px * y.y - py * x.y) / area;
+  r.along_v = (py * x.x - px * y.x) / area;
+  r.along_u -= dot(r.along_u, n) * n;
+  r.along_v -= dot(r.along_v, n) * n;
+  r.depth = m.height_scale * length(r.along_u);
+  if (u_relief_steps != 0u)
+    r.place = meetRelief(uv, -crossed(r, to_viewer, n), m.height_scale);
+  else
+    r.place.z = textureLod(u_relief, uv, 0.0).x;
+  vec2 by = r.place.xy - uv;
+  // What every set of coordinates changes by: as many pixels as the relief's do.
+  vec2 pixels = vec2(by.x * y.y - by.y * y.x, x.x * by.y - x.y * by.x) / area;
+  g_uv01 += g_x01 * pixels.x + g_y01 * pixels.y;
+  g_uv23 += g_x23 * pixels.x + g_y23 * pixels.y;
+  vec4 there = textureGrad(u_relief, r.place.xy, x, y);
+  vec2 slope = 2.0 * there.zw - 1.0;
+  float up = sqrt(max(1.0 - dot(slope, slope), 0.0));
+  r.normal = normalize(slope.x * normalize(r.along_u) - slope.y * normalize(r.along_v) + up * n);
+  r.open = smallScaleOcclusion(up, there.y, there.x);
+  return r;
+}
+#else
+#define LOOK_UP(map, use) texture(map, uvOf(use, g_uv01, g_uv23))
+#endif
 
 // The normal of the surface's detail, on the side of n; n where there is none.
 vec3 detailNormal(Material m, vec3 n) {
@@ -76,27 +143,14 @@ vec3 detailNormal(Material m, vec3 n) {
   float l = length(t);
   if (!(l > 0.0)) return n;
   t /= l;
-  vec3 local = 2.0 * texture(u_normal, uv).xyz - 1.0;
+  vec3 local = 2.0 * LOOK_UP(u_normal, m.normal).xyz - 1.0;
   local.xy *= m.normal_scale;
   return normalize(local.x * t + local.y * hand * cross(n, t) + local.z * n);
 }
 
 void main() {
   Material m = materials[u_material];
-  vec4 base = m.base_colour * v_colour;
-  if (m.base.present != 0u) base *= texture(u_base, uvOf(m.base, v_uv01, v_uv23));
-  if (m.alpha_mode == kAlphaMask && base.a < m.alpha_cutoff) discard;
-  float opacity = m.alpha_mode == kAlphaBlend ? clamp(base.a, 0.0, 1.0) : 1.0;
-
-  float metallic = m.metallic, roughness = m.roughness;
-  if (m.metallic_roughness.present != 0u) {
-    vec4 texel = texture(u_metallic_roughness, uvOf(m.metallic_roughness, v_uv01, v_uv23));
-    roughness *= texel.g;
-    metallic *= texel.b;
-  }
-  vec3 emission = m.emission_alpha.rgb;
-  if (m.emission.present != 0u) emission *= texture(u_emission, uvOf(m.emission, v_uv01, v_uv23)).rgb;
-
+  startCoordinates();
   vec3 to_viewer = u_orthographic != 0u ? -u_forward : normalize(u_eye - v_position);
   // Surfaces are lit on the side from which they are seen.
   vec3 ng = normalize(cross(dFdx(v_position), dFdy(v_position)));
@@ -104,6 +158,23 @@ void main() {
   float length_n = length(v_normal);
   vec3 n = length_n > 0.0 ? v_normal / length_n : ng;
   if (dot(n, ng) < 0.0) n = -n;
+#if RELIEF
+  Relief relief = reliefOf(m, n, to_viewer);
+#endif
+
+  vec4 base = m.base_colour * v_colour;
+  if (m.base.present != 0u) base *= LOOK_UP(u_base, m.base);
+  if (m.alpha_mode == kAlphaMask && base.a < m.alpha_cutoff) discard;
+  float opacity = m.alpha_mode == kAlphaBlend ? clamp(base.a, 0.0, 1.0) : 1.0;
+
+  float metallic = m.metallic, roughness = m.roughness;
+  if (m.metallic_roughness.present != 0u) {
+    vec4 texel = LOOK_UP(u_metallic_roughness, m.metallic_roughness);
+    roughness *= texel.g;
+    metallic *= texel.b;
+  }
+  vec3 emission = m.emission_alpha.rgb;
+  if (m.emission.present != 0u) emission *= LOOK_UP(u_emission, m.emission).rgb;
 
   vec2 atlas_uv = v_uv01.zw;
   bool baked = u_page >= 0;
@@ -137,6 +208,9 @@ void main() {
   } else {
     bool full = u_full_materials != 0u;
     vec3 nd = full ? detailNormal(m, n) : n;
+#if RELIEF
+    if (m.normal.present == 0u) nd = relief.normal;
+#endif
     if (dot(nd, ng) <= 0.0) nd = n;
     float cos_o = max(dot(nd, to_viewer), kLeastCosine);
     Lobes lobes;
@@ -147,7 +221,7 @@ void main() {
       lobes = lobesOf(base.rgb, clamp(metallic, 0.0, 1.0), roughness, texture(u_reflected, at).xy);
     }
     vec3 direct = vec3(0.0), glossy = vec3(0.0), incident = vec3(0.0);
-    if (u_view == kLit || u_view == kRelit || u_view == kDirect) {
+    if (u_view == kLit || u_view == kRelit || u_view == kDirect || (u_view == kIndirect && u_bounce_gain > 0.0)) {
       for (int i = 0; i < u_light_count; ++i) {
         Light light = lights[i];
         float r;
@@ -156,7 +230,11 @@ void main() {
         incident += factor * light.strength_area.rgb;
         float cos_i = dot(nd, way);
         if (factor <= 0.0 || cos_i <= 0.0 || dot(ng, way) <= 0.0) continue;
-        vec3 e = light.strength_area.rgb * (factor * cos_i * visibility(light, v_position, ng));
+        float seen = visibility(light, v_position, ng);
+#if RELIEF
+        if (u_relief_shadows != 0u) seen *= reliefVisibility(relief.place, crossed(relief, way, n));
+#endif
+        vec3 e = light.strength_area.rgb * (factor * cos_i * seen);
         direct += e;
         if (full) glossy += e * specularLobe(lobes, nd, way, to_viewer, cos_i, cos_o);
       }
@@ -175,7 +253,15 @@ void main() {
     } else {
       direct = vec3(0.0), glossy = vec3(0.0);
     }
-    if (u_obscurance_gain > 0.0 && baked) indirect *= mix(vec3(1.0), texture(u_obscurance, place).rgb, u_obscurance_gain);
+    if (baked && (u_obscurance_gain > 0.0 || u_bounce_gain > 0.0)) {
+      // Multi-scale PRT, section 10: W from the large scale to the medium one, and the last short way of direct light.
+      vec3 w = texture(u_obscurance, place).rgb;
+      indirect = indirect * mix(vec3(1.0), w, u_obscurance_gain) + u_bounce_gain * w * direct;
+    }
+#if RELIEF
+    indirect *= mix(1.0, relief.open, u_small_scale_gain);
+#endif
+    if (u_view == kIndirect) direct = vec3(0.0), glossy = vec3(0.0);
     direct *= u_direct_gain;
     glossy *= u_direct_gain;
     vec3 seen = u_view == kIndirect ? vec3(0.0) : emission;

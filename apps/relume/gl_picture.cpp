@@ -100,7 +100,7 @@ void showOnAtlas(render::Renderer& renderer, const scene::Scene& scene, const as
 
 image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
                        const picture::Viewpoint& viewpoint, const picture::PictureOptions& options,
-                       bool full_materials) {
+                       const GlExtras& extras) {
   const render::HeadlessContext context;
   render::Renderer renderer(scene, kFineShadows);
   showOnAtlas(renderer, scene, asset, options.view, options.layer);
@@ -112,7 +112,13 @@ image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
   frame.ambient = options.ambient;
   frame.beta = options.beta;
   frame.background = options.background;
-  frame.full_materials = full_materials;
+  frame.full_materials = extras.full_materials;
+  frame.relief_steps = extras.relief_steps, frame.relief_shadows = extras.relief_shadows;
+  frame.small_scale_gain = extras.small_scale;
+  if (asset && picture::weightsByObscurance(options)) {
+    renderer.setObscurance(asset->atlas, picture::obscurancePlane(*asset, options.obscurance_layer));
+    frame.obscurance_gain = options.obscurance, frame.bounce_gain = options.bounce;
+  }
   return renderer.picture(frame, options.samples);
 }
 

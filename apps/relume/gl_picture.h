@@ -21,10 +21,17 @@ render::Camera cameraOf(const picture::Viewpoint& viewpoint);
 void showOnAtlas(render::Renderer& renderer, const scene::Scene& scene, const asset::Asset* asset,
                  picture::View view, const std::string& layer);
 
-/// The picture that picture::render makes, without a window; `full_materials`: with glTF's lobes and normal
-/// maps. Throws as picture::render, and Error kUnsupported where there is no OpenGL.
+/// What comes on top of the pictures of rays.
+struct GlExtras {
+  bool full_materials = false;  ///< glTF's lobes, normal maps, and relief:
+  bool relief_steps = true, relief_shadows = true;
+  float small_scale = 1;
+};
+
+/// The picture that picture::render makes, without a window, and with extras. Throws as picture::render, and
+/// Error kUnsupported where there is no OpenGL.
 image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
                        const picture::Viewpoint& viewpoint, const picture::PictureOptions& options,
-                       bool full_materials);
+                       const GlExtras& extras);
 
 }  // namespace relume::app

@@ -34,7 +34,9 @@ struct RenderOptions {
   std::optional<float> exposure, error;
   std::optional<int> spp, bounces;
   std::uint64_t seed = 1;
-  float fov_deg = 50, beta = 0.1f;
+  std::string obscurance_layer;
+  std::vector<std::string> relief{"steps", "shadows", "occlusion"};
+  float fov_deg = 50, beta = 0.1f, obscurance = 0, bounce = 0;
   int camera = -1;
 };
 
@@ -136,6 +138,17 @@ bool showsOwnLight(const Opened& opened, const std::string& layer) {
          std::any_of(layers.begin(), layers.end(), picture::isDirectional);
 }
 
+/// What OpenGL shows and rays do not.
+GlExtras extrasOf(const RenderOptions& options) {
+  const auto relief = [&](const char* part) {
+    return std::find(options.relief.begin(), options.relief.end(), part) != options.relief.end();
+  };
+  return {.full_materials = options.materials == "full",
+          .relief_steps = relief("steps"),
+          .relief_shadows = relief("shadows"),
+          .small_scale = relief("occlusion") ? 1.0f : 0.0f};
+}
+
 void renderPicture(const RenderOptions& options, Progress& progress) {
   requireWritable(options.output);
   if (options.mode == "reference" || options.mode == "direct") {
@@ -170,14 +183,18 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
                                                        : "3.14159265";
   picture.ambient = Irradiance(parseTriple(ambient, "--ambient", true));
   picture.beta = options.beta;
+  picture.obscurance = options.obscurance, picture.bounce = options.bounce;
+  picture.obscurance_layer = options.obscurance_layer;
+  if ((options.obscurance > 0 || options.bounce > 0) && !isRelit(picture.view))
+    throw Error(ErrorCode::kUsage, "--obscurance and --bounce", "weight the light that a bake is relit with",
+                "add --mode relit or --view indirect");
   picture.background = parseTriple(options.background, "--background", true);
   const picture::Viewpoint viewpoint = viewpointOf(options, size, tracer);
   if (isRelit(picture.view) && !(gl && followsLamps(*opened, options.layer)))
     relightForPicture(options, picture, *opened);
   const asset::Asset* asset = opened->asset ? &*opened->asset : nullptr;
-  const image::Image linear =
-      gl ? glPicture(opened->scene, asset, viewpoint, picture, options.materials == "full")
-         : picture::render(tracer, asset, viewpoint, picture, progress);
+  const image::Image linear = gl ? glPicture(opened->scene, asset, viewpoint, picture, extrasOf(options))
+                                 : picture::render(tracer, asset, viewpoint, picture, progress);
   writePicture(options, linear, picture.view, picture.background);
 }
 
@@ -259,6 +276,26 @@ void addRender(CLI::App& app, Program& program) {
   command
       ->add_option("--beta", options->beta, "share of every light that arrives everywhere as indirect light")
       ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--obscurance", options->obscurance,
+                   "with --mode relit: share by which an obscurance or spectral layer of the bake darkens "
+                   "indirect light, 1 as published")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--bounce", options->bounce,
+                   "with --mode relit: this times obscurance times direct light is added, for light whose "
+                   "last way is short; 1 as published, which is bright")
+      ->check(CLI::Range(0.0, 4.0))
+      ->capture_default_str();
+  command->add_option("--obscurance-layer", options->obscurance_layer,
+                      "the layer for both; without it, the first spectral, else obscurance");
+  command
+      ->add_option("--relief", options->relief,
+                   "with --materials full: what height maps do, of steps, shadows and occlusion; or none")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"steps", "shadows", "occlusion", "none"}))
       ->capture_default_str();
   command->add_option(
       "--exposure", options->exposure,

@@ -71,6 +71,8 @@ std::uint32_t GlbScene::addMaterial(const MaterialSpec& spec) {
     if (strength > 1)
       material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", tidy(strength)}};
   }
+  if (spec.height)
+    material["extras"]["relume"]["height"] = {{"index", *spec.height}, {"scale", tidy(spec.height_scale)}};
   if (spec.double_sided) material["doubleSided"] = true;
   json_["materials"].push_back(material);
   return std::uint32_t(json_["materials"].size() - 1);

@@ -20,6 +20,8 @@ struct MaterialSpec {
   Vec3 emission{0.0f};  ///< radiance; above 1 written with KHR_materials_emissive_strength
   bool double_sided = false;
   std::optional<std::uint32_t> texture = std::nullopt;  ///< base colour, TEXCOORD_0
+  std::optional<std::uint32_t> height = std::nullopt;   ///< extras.relume.height, TEXCOORD_0
+  double height_scale = 0.05;
 };
 
 struct Placement {

@@ -2,6 +2,7 @@
 #include "picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -37,6 +38,51 @@ int noise(int x, int y, int cell, std::uint32_t seed) {
   return (top * (cell - fy) + low * fy) / (cell * cell);
 }
 
+std::vector<std::byte> pngOf(const std::vector<std::uint8_t>& pixels, int channels) {
+  std::vector<std::byte> png;
+  const auto take = [](void* out, void* data, int size) {
+    const auto* bytes = static_cast<const std::byte*>(data);
+    auto* to = static_cast<std::vector<std::byte>*>(out);
+    to->insert(to->end(), bytes, bytes + size);
+  };
+  stbi_write_png_to_func(take, &png, kSize, kSize, channels, pixels.data(), kSize * channels);
+  return png;
+}
+
+struct Stone {
+  int number;     ///< which
+  double inside;  ///< 0 at its rim, 1 where it is flat
+};
+
+// Eight rows of four, every second one moved by half a brick.
+Stone brickAt(int x, int y) {
+  constexpr int kRow = kSize / 8, kLength = kSize / 4;
+  const int row = y / kRow, along = (x + (row % 2) * kLength / 2) % kSize;
+  const int u = along % kLength, v = y % kRow;
+  const double rim = std::min({u, kLength - 1 - u, v, kRow - 1 - v}) - 0.5;
+  return {row * 4 + along / kLength, rim / 2.5};
+}
+
+// The nearest of 8 x 8 points of a shaken grid; the rim is where two are as near.
+Stone cobbleAt(int x, int y) {
+  constexpr int kCells = 8, kCell = kSize / kCells;
+  double first = 1e9, second = 1e9;
+  int number = 0;
+  for (int j = y / kCell - 2; j <= y / kCell + 2; ++j)
+    for (int i = x / kCell - 2; i <= x / kCell + 2; ++i) {
+      const int id = (i + kCells) % kCells + kCells * ((j + kCells) % kCells);
+      const std::uint32_t shake = hash(std::uint32_t(id) + 101u);
+      const double px = kCell * (i + 0.2 + 0.6 * double(shake & 255u) / 255),
+                   py = kCell * (j + 0.2 + 0.6 * double(shake >> 8 & 255u) / 255);
+      const double d = std::sqrt((x - px) * (x - px) + (y - py) * (y - py));
+      if (d < first)
+        second = first, first = d, number = id;
+      else
+        second = std::min(second, d);
+    }
+  return {number, (second - first - 1.5) / 7};
+}
+
 }  // namespace
 
 std::vector<std::byte> floorTiles() {
@@ -54,14 +100,27 @@ std::vector<std::byte> floorTiles() {
         pixels.push_back(std::uint8_t(std::clamp(value / 2 * 2, 0, 255)));
       }
     }
-  std::vector<std::byte> png;
-  const auto take = [](void* out, void* data, int size) {
-    const auto* bytes = static_cast<const std::byte*>(data);
-    auto* to = static_cast<std::vector<std::byte>*>(out);
-    to->insert(to->end(), bytes, bytes + size);
-  };
-  stbi_write_png_to_func(take, &png, kSize, kSize, 3, pixels.data(), kSize * 3);
-  return png;
+  return pngOf(pixels, 3);
+}
+
+ReliefPictures reliefOf(ReliefPattern pattern) {
+  std::vector<std::uint8_t> colours, heights;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const Stone stone = pattern == ReliefPattern::kCobbles ? cobbleAt(x, y) : brickAt(x, y);
+      // Rounded to the joint, with a grain on top.
+      const double edge = std::clamp(stone.inside, 0.0, 1.0), round = edge * (2 - edge);
+      const int grain = noise(x, y, 8, 3) - 128, fine = noise(x, y, 2, 4) - 128;
+      const int top = 196 + int(hash(std::uint32_t(stone.number) + 17u) % 48u);
+      heights.push_back(std::uint8_t(std::clamp(int(top * round) + grain / 12 + fine / 24, 0, 255)));
+      const int tone = int(hash(std::uint32_t(stone.number)) % 41u) - 20 + grain / 12 + fine / 10;
+      constexpr int kTones[2][2][3] = {{{70, 66, 60}, {140, 134, 126}}, {{150, 142, 130}, {158, 86, 66}}};
+      const auto& [joint, body] = kTones[pattern == ReliefPattern::kBricks];
+      for (int c = 0; c < 3; ++c)
+        colours.push_back(std::uint8_t(std::clamp(
+            int(joint[c] + (body[c] + tone - joint[c]) * std::min(1.0, 4 * edge)) / 2 * 2, 0, 255)));
+    }
+  return {pngOf(colours, 3), pngOf(heights, 1)};
 }
 
 }  // namespace relume::scenes

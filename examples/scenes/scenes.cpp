@@ -8,7 +8,8 @@ std::span<const SceneEntry> allScenes() {
                                            {"temple", makeTemple},       {"car", makeCar},
                                            {"halls", makeHalls},         {"rooms", makeRooms},
                                            {"crossing", makeCrossing},   {"lampshade", makeLampshade},
-                                           {"furniture", makeFurniture}, {"glossy_room", makeGlossyRoom}};
+                                           {"furniture", makeFurniture}, {"glossy_room", makeGlossyRoom},
+                                           {"courtyard", makeCourtyard}};
   return kScenes;
 }
 

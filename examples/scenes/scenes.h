@@ -32,6 +32,9 @@ GlbScene makeFurniture(int detail);
 /// A room lit by its ceiling and back wall, with soft gloss (docs/bases.md).
 GlbScene makeGlossyRoom(int detail);
 
+/// A corner of brick and cobbles whose relief is in height maps (docs/rendering.md).
+GlbScene makeCourtyard(int detail);
+
 struct SceneEntry {
   const char* name;
   GlbScene (*make)(int detail);

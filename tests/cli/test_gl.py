@@ -70,6 +70,15 @@ class Gl(test_cli.CliTest):
         full = json.loads(relume("compare", self.folder / "gl.png", self.folder / "cpu.png", "--metric", "flip", "--json").stdout)["mean"]
         self.assertGreater(full, plain + 0.005)
 
+    def test_terms_of_relit_light(self):
+        self.bake("--layer", "obscurance", "--layer", "lightpath:count=64,size=32", "--quality", "draft")
+        eye = ["--mode", "relit", "--eye", "1,1.5,5", "--target", "0,0.5,0"]
+        self.assertLess(self.both(self.baked, *eye, "--obscurance", 1, "--bounce", 0.2), 0.03)
+        relume("render", self.baked, "-o", self.folder / "gl.png", "--renderer", "gl", "--size", "320x180", "--exposure", 0, *eye)
+        without = json.loads(relume("compare", self.folder / "gl.png", self.folder / "cpu.png", "--metric", "flip", "--json").stdout)["mean"]
+        self.assertGreater(without, 0.03)
+        self.assertIn("--mode relit", relume("render", self.baked, "-o", self.folder / "no.png", "--view", "lit", "--bounce", 1, expect=2).stderr)
+
     def test_what_it_does_not_do_is_said(self):
         out = self.folder / "no.png"
         self.assertIn("--mode relit", relume("render", self.scene, "-o", out, "--mode", "reference", "--renderer", "gl", expect=2).stderr)

@@ -49,6 +49,25 @@ TEST_P(GlPicture, IsThatOfRays) {
 
 constexpr golden::Tolerance kSame{.mean = 0.005, .p99 = 0.05}, kShadows{.mean = 0.02, .p99 = 0.2};
 
+TEST_F(GlPicture, OfAllTermsOfRelitLightIsThatOfRays) {
+  const asset::Asset bake = stageRelitBake();
+  const PictureOptions options = composedStage();
+  render::Renderer renderer(stage(), {.cube_size = 512, .plane_size = 512});
+  renderer.setValues(bake.atlas, bake.layers[1].plane("value"));
+  renderer.setObscurance(bake.atlas, bake.layers[2].plane("value"));
+  render::FrameSettings frame;
+  frame.size = {options.width, options.height};
+  const Viewpoint view = stageView();
+  frame.camera = {view.world_from_camera, view.vertical_fov, 0};
+  frame.view = render::View::kRelit;
+  frame.background = options.background;
+  frame.lights = options.lights;
+  frame.obscurance_gain = options.obscurance, frame.bounce_gain = options.bounce;
+  const auto reference = std::filesystem::path(RELUME_GOLDEN_DIR) / "stage-composed.png";
+  if (golden::updating()) GTEST_SKIP() << "stored images are those of rays";
+  EXPECT_TRUE(golden::matches(renderer.picture(frame, 16), reference, kShadows));
+}
+
 INSTANTIATE_TEST_SUITE_P(Views, GlPicture,
                          testing::Values(GlCase{View::kObscurance, render::View::kObscurance, kSame},
                                          GlCase{View::kOcclusion, render::View::kOcclusion, kSame},

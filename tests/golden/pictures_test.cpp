@@ -44,5 +44,14 @@ INSTANTIATE_TEST_SUITE_P(Views, GoldenPicture,
                            return text;
                          });
 
+TEST(GoldenComposition, LooksAsItDid) {
+  const asset::Asset bake = stageRelitBake();
+  const scene::Scene scene = stage();
+  const trace::Tracer tracer(scene);
+  SilentProgress silent;
+  EXPECT_TRUE(golden::matches(render(tracer, &bake, stageView(), composedStage(), silent),
+                              std::filesystem::path(RELUME_GOLDEN_DIR) / "stage-composed.png", kTolerance));
+}
+
 }  // namespace
 }  // namespace relume::picture

@@ -60,6 +60,21 @@ inline asset::Asset stageBake() {
   return bake;
 }
 
+/// The same with relit irradiance, warm from the left and cold from the right, and a spectral W. For the
+/// composition of [LPM] section 10.
+inline asset::Asset stageRelitBake() {
+  asset::Asset bake = stageBake();
+  std::vector<float> irradiance, w;
+  for (std::size_t i = 0; i < bake.atlas.texel.size(); ++i) {
+    const float u = (static_cast<float>(i % 16) + 0.5f) / 16, v = bake.layers[0].planes[0].values[i];
+    irradiance.insert(irradiance.end(), {1.2f - 0.8f * u, 0.7f, 0.3f + 0.8f * u});
+    w.insert(w.end(), {std::min(1.0f, 1.3f * v), v, 0.8f * v});
+  }
+  addLayer(bake, "lightpath", "value", irradiance);
+  addLayer(bake, "spectral", "value", w);
+  return bake;
+}
+
 /// A square lamp under the ceiling and a candle on the floor.
 inline LightSet stageLights() {
   Light lamp;
@@ -69,6 +84,18 @@ inline LightSet stageLights() {
   lamp.area = 0.2f;
   lamp.intensity = 25.0f;
   return {lamp, {.colour = {1, 0.6f, 0.3f}, .intensity = 1.2f, .position = {0.7f, 0.4f, -0.6f}}};
+}
+
+/// All terms of a relit picture at once.
+inline PictureOptions composedStage() {
+  PictureOptions options;
+  options.width = 192, options.height = 144;
+  options.view = View::kRelit;
+  options.background = Vec3(0.1f);
+  options.ambient = Irradiance(0.0f);
+  options.lights = stageLights();
+  options.obscurance = 1, options.bounce = 0.2f;
+  return options;
 }
 
 inline Viewpoint stageView() { return lookAt({0.6f, 1.3f, 4.4f}, {0, 0.9f, 0}, 0.65f); }

@@ -145,11 +145,21 @@ void drawPanels(Stage& stage, PanelState& state) {
   if (ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen)) {
     ImGui::SliderFloat("direct", &stage.frame.direct_gain, 0, 2);
     ImGui::SliderFloat("indirect", &stage.frame.indirect_gain, 0, 2);
+    if (stage.has_obscurance) {
+      ImGui::SliderFloat("obscurance", &stage.frame.obscurance_gain, 0, 1);
+      ImGui::SliderFloat("short bounce", &stage.frame.bounce_gain, 0, 1);
+    }
     float ambient = stage.frame.ambient.rgb.x;
     if (ImGui::SliderFloat("ambient", &ambient, 0, 4)) stage.frame.ambient = Irradiance(ambient);
     ImGui::Checkbox("exposure by itself", &stage.auto_exposure);
     ImGui::SliderFloat("exposure, stops", &stage.exposure, -12, 12);
     ImGui::Checkbox("glossy materials, normal maps", &stage.frame.full_materials);
+    if (stage.frame.full_materials && stage.has_relief) {
+      ImGui::Checkbox("relief", &stage.frame.relief_steps);
+      ImGui::SameLine();
+      ImGui::Checkbox("its shadows", &stage.frame.relief_shadows);
+      ImGui::SliderFloat("its occlusion", &stage.frame.small_scale_gain, 0, 1);
+    }
     ImGui::Checkbox("smooth edges", &stage.fxaa);
   }
   if (ImGui::CollapsingHeader("Lamps", ImGuiTreeNodeFlags_DefaultOpen)) lightsPanel(stage);

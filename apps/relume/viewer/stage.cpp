@@ -88,6 +88,11 @@ Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
         renderer_->setTransfer(*asset, l);
         break;
       }
+  has_obscurance =
+      has(asset, [](const asset::Layer& l) { return l.kind == "obscurance" || l.kind == "spectral"; });
+  if (has_obscurance) renderer_->setObscurance(asset->atlas, picture::obscurancePlane(*asset, ""));
+  has_relief = std::any_of(scene.materials.begin(), scene.materials.end(),
+                           [](const scene::Material& m) { return static_cast<bool>(m.height_texture); });
   views_ = viewsOf(asset);
   // A plain scene is seen under its lamps alone.
   if (!asset) views_.insert(views_.begin(), {"direct light", View::kRelit});

@@ -40,7 +40,9 @@ class Stage {
   bool auto_exposure = true;
   float exposure = 0;
   bool fxaa = true;
-  int selected = -1;  ///< light, or none
+  int selected = -1;            ///< light, or none
+  bool has_relief = false;      ///< some material has a height map
+  bool has_obscurance = false;  ///< the bake has W for frame.obscurance_gain and .bounce_gain
 
   const std::vector<render::PassTime>& times() const { return times_; }
   const std::string& caption() const { return caption_; }

@@ -89,6 +89,26 @@ bool isTransfer(const asset::Layer& layer) {
   return layer.kind == "lightpath" || layer.kind == "lightgroups";
 }
 
+const asset::Plane& obscurancePlane(const asset::Asset& asset, const std::string& name) {
+  const asset::Plane* found = nullptr;
+  if (!name.empty()) {
+    const asset::Layer& layer = asset.layer(name);
+    if (isObscurance(layer)) found = findPlane(layer, "value");
+  } else {
+    for (const char* kind : {"spectral", "obscurance"})
+      for (const asset::Layer& layer : asset.layers)
+        if (!found && layer.kind == kind) found = findPlane(layer, "value");
+  }
+  if (!found)
+    throw Error(ErrorCode::kNoSuchLayer, name.empty() ? "the bake" : "layer " + name,
+                "holds no obscurance to weight light by", "bake obscurance or spectral");
+  if ((found->channels != 1 && found->channels != 3) ||
+      found->values.size() != asset.atlas.pageTexels() * static_cast<std::size_t>(found->channels))
+    throw Error(ErrorCode::kCorruptAsset, "plane " + found->name, "does not fit the atlas",
+                "bake the scene again");
+  return *found;
+}
+
 BakedValues::BakedValues(const scene::Scene& scene, const asset::Asset* asset, View view,
                          const std::string& layer)
     : scene_(scene), asset_(asset) {
@@ -149,6 +169,10 @@ Vec3 BakedValues::bilinear(const asset::Plane& plane, const Place& place) const 
 }
 
 Vec3 BakedValues::value(const Place& place) const { return value_ ? bilinear(*value_, place) : Vec3(1.0f); }
+
+Vec3 BakedValues::obscurance(const Place& place) const {
+  return obscurance_ ? bilinear(*obscurance_, place) : Vec3(1.0f);
+}
 
 Normal BakedValues::bentNormal(const Place& place, Normal fallback) const {
   if (!bent_) return fallback;

@@ -172,12 +172,19 @@ const char* name(View view) {
   return "unknown";
 }
 
+bool weightsByObscurance(const PictureOptions& options) {
+  return (options.view == View::kRelit || options.view == View::kIndirect) &&
+         (options.obscurance > 0 || options.bounce > 0);
+}
+
 image::Image render(const trace::Tracer& tracer, const asset::Asset* asset, const Viewpoint& viewpoint,
                     const PictureOptions& options, Progress& progress) {
   requireRange("picture width", options.width, 1, 1 << 15);
   requireRange("picture height", options.height, 1, 1 << 15);
   requireRange("samples per pixel", options.samples, 1, 1 << 16);
-  const BakedValues baked(tracer.scene(), asset, options.view, options.layer);
+  BakedValues baked(tracer.scene(), asset, options.view, options.layer);
+  if (asset && weightsByObscurance(options))
+    baked.useObscurance(obscurancePlane(*asset, options.obscurance_layer));
   const LayeredTracer layered(tracer);
   const Shader shader(layered, baked, options);
   const PrimaryRays primary(viewpoint, options.width, options.height);

@@ -4,7 +4,8 @@
 //   lit          L = k ((I_A + beta sum_j E_j) W + E) + emission                     ([IKSZ03] eq. 5)
 //   lightmap     L = k E + emission, E the baked irradiance
 //   the same of directional light: E for the normal-mapped normal, and glossy lobes (glossy_surface.h)
-//   relit        L = k (E + I) + emission, I the relit indirect irradiance; indirect: L = k I
+//   relit        L = k (E + I') + emission, I' = I (1 - o + o W) + b W E, I the relit indirect irradiance
+//                ([LPM] section 10; o and b are PictureOptions' obscurance and bounce); indirect: L = k I'
 // where E_j counts every light, turned or hidden or not (eq. 7), and k_A = k_D = k.
 // Beyond the paper: metals have no diffuse albedo and would be black, so for display they reflect all light
 // as if diffusely: k is base colour / pi everywhere, which is albedo / pi where nothing is metallic. That is
@@ -66,6 +67,11 @@ Vec3 Shader::lit(const ShadingPoint& point, const Receiver& receiver, Irradiance
   } else if (options_.view == View::kRelit || options_.view == View::kIndirect) {
     const bool lamps = options_.view == View::kRelit;
     ambient += place ? Irradiance(baked_.value(*place)) : Irradiance(0.0f);
+    if (place) {
+      const Vec3 w = baked_.obscurance(*place);
+      ambient = Irradiance(ambient.rgb * glm::mix(Vec3(1), w, options_.obscurance) +
+                           options_.bounce * w * direct.rgb);
+    }
     if (!lamps) return reflected(Albedo(base), ambient).rgb;
   } else if (place) {
     if (options_.view == View::kLit)
@@ -141,7 +147,8 @@ void Shader::shade(std::span<const ShadingPoint> points, std::span<Vec3> colours
   RELUME_CHECK_EQ(points.size(), colours.size());
   RELUME_CHECK_LE(points.size(), kPacket);
   const scene::Scene& scene = tracer_.scene();
-  const bool lamps = options_.view == View::kLit || options_.view == View::kRelit;
+  const bool lamps = options_.view == View::kLit || options_.view == View::kRelit ||
+                     (options_.view == View::kIndirect && options_.bounce > 0);
   std::array<Receiver, kPacket> receivers;
   std::array<Irradiance, kPacket> direct;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relume/image/relief.h"
+
 namespace relume::render {
 namespace {
+
+constexpr GLuint kReliefUnit = 11;  // shaders/relief.glsl
 
 struct Vertex {
   Vec3 position, normal;
@@ -20,8 +24,9 @@ struct MapUse {
 struct GpuMaterial {  // std430, shaders/material.glsl
   Vec4 base_colour, emission_alpha;
   float metallic, roughness, normal_scale, alpha_cutoff;
-  std::uint32_t alpha_mode, unlit, double_sided, height_mapped;
-  MapUse base, metallic_roughness, normal, emission;
+  std::uint32_t alpha_mode, unlit, double_sided;
+  float height_scale;
+  MapUse base, metallic_roughness, normal, emission, height;
 };
 
 MapUse useOf(const scene::TextureRef& ref, const scene::Scene& scene) {
@@ -48,6 +53,8 @@ GpuMaterial toGpu(const scene::Material& m, const scene::Scene& scene) {
   out.metallic_roughness = useOf(m.metallic_roughness_texture, scene);
   out.normal = useOf(m.normal_texture, scene);
   out.emission = useOf(m.emission_texture, scene);
+  out.height = useOf(m.height_texture, scene);
+  out.height_scale = m.height_scale;
   return out;
 }
 
@@ -144,7 +151,8 @@ GpuScene::GpuScene(const scene::Scene& scene) {
     materials.push_back(toGpu(m, scene));
     const auto slot = [&](const scene::TextureRef& ref) { return ref ? ref.texture : white; };
     slots_.push_back({slot(m.base_colour_texture), slot(m.metallic_roughness_texture), slot(m.normal_texture),
-                      slot(m.emission_texture)});
+                      slot(m.emission_texture), kNoRelief});
+    if (m.height_texture && scene.textures[m.height_texture.texture].image) addRelief(scene, m);
     alpha_tested_.push_back(m.alpha_mode != scene::AlphaMode::kOpaque);
     double_sided_.push_back(m.double_sided);
   }
@@ -167,6 +175,33 @@ GpuScene::GpuScene(const scene::Scene& scene) {
   std::stable_sort(drawn_.begin(), drawn_.end(),
                    [](const Drawn& a, const Drawn& b) { return a.material < b.material; });
   setFilter(TextureFilter::kMipmaps);
+}
+
+// Height, sine of half the aperture of the free cone, and the normal's x and y.
+void GpuScene::addRelief(const scene::Scene& scene, const scene::Material& material) {
+  const scene::Texture& map = scene.textures[material.height_texture.texture];
+  image::Image heights(map.image->width, map.image->height, 1);
+  for (std::size_t i = 0; i < heights.pixels(); ++i)
+    heights.data[i] =
+        static_cast<float>(map.image->data[i * static_cast<std::size_t>(map.image->channels)]) / 255.0f;
+  const image::ReliefOptions how{.depth = material.height_scale};
+  const image::Image normals = image::reliefNormals(heights, how), cones = image::reliefCones(heights, how);
+  const auto share = [](float v) { return static_cast<std::uint16_t>(std::lround(65535.0f * v)); };
+  std::vector<std::uint16_t> texels;
+  for (std::size_t i = 0; i < heights.pixels(); ++i)
+    texels.insert(texels.end(),
+                  {share(heights.data[i]), share(cones.data[i]), share(0.5f + 0.5f * normals.data[3 * i]),
+                   share(0.5f + 0.5f * normals.data[3 * i + 1])});
+  Texture out = Texture::make2d(GL_RGBA16, {heights.width, heights.height}, true);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(out.name(), 0, 0, 0, heights.width, heights.height, GL_RGBA, GL_UNSIGNED_SHORT,
+                      texels.data());
+  glGenerateTextureMipmap(out.name());
+  out.parameter(GL_TEXTURE_WRAP_S, wrapOf(map.wrap_u));
+  out.parameter(GL_TEXTURE_WRAP_T, wrapOf(map.wrap_v));
+  out.parameter(GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  slots_.back().relief = static_cast<std::uint32_t>(reliefs_.size());
+  reliefs_.push_back(std::move(out));
 }
 
 Texture GpuScene::upload(const scene::Texture& texture) {
@@ -228,6 +263,7 @@ void GpuScene::draw(const Drawn& what, const Program& program, bool all_textures
     textures_[s.metallic_roughness].bind(1);
     textures_[s.normal].bind(2);
     textures_[s.emission].bind(3);
+    if (s.relief != kNoRelief) reliefs_[s.relief].bind(kReliefUnit);
   }
   const Range& r = ranges_[what.mesh];
   glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(r.indices), GL_UNSIGNED_INT,

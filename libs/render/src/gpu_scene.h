@@ -43,6 +43,8 @@ class GpuScene {
   void bind() const;
   /// Draws one instance with `program` in use, whose uniforms u_world_from_local and u_material are set.
   void draw(const Drawn& what, const Program& program, bool all_textures) const;
+  /// Whether its material has a height map.
+  bool hasRelief(const Drawn& what) const { return slots_[what.material].relief != kNoRelief; }
   bool needsTextures(const Drawn& what) const { return alpha_tested_[what.material]; }
 
  private:
@@ -52,14 +54,18 @@ class GpuScene {
   };
   struct Slots {
     std::uint32_t base, metallic_roughness, normal, emission;  // of textures_, the last one is white
+    std::uint32_t relief;                                      // of reliefs_
   };
 
+  void addRelief(const scene::Scene& scene, const scene::Material& material);
   Texture upload(const scene::Texture& texture);
 
   std::vector<Range> ranges_;  // by mesh
   std::vector<Box3> local_boxes_;
   std::vector<Drawn> drawn_;
-  std::vector<Texture> textures_;
+  static constexpr std::uint32_t kNoRelief = 0xffffffffu;
+
+  std::vector<Texture> textures_, reliefs_;
   std::vector<Slots> slots_;  // by material
   std::vector<bool> alpha_tested_;
   std::vector<std::uint8_t> double_sided_;

@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include "atlas_textures.h"
 #include "camera_matrix.h"
@@ -21,25 +18,12 @@
 #include "relume/core/sampling.h"
 #include "relume/render/context.h"
 #include "shadow_maps.h"
+#include "surface_pass.h"
 
 namespace relume::render {
 namespace {
 
-// Units of shaders/surface.frag.glsl.
-constexpr GLuint kValueUnit = 4, kLabelUnit = 5, kBentUnit = 6, kReflectedUnit = 7, kObscuranceUnit = 10;
-constexpr int kReflectedSize = 32;
 constexpr int kThumbnailWidth = 32, kThumbnailHeight = 18;
-
-Texture reflectedTable() {
-  Texture table = Texture::make2d(GL_RG32F, {kReflectedSize, kReflectedSize});
-  table.plain(true);
-  const Program program = Program::compute("reflected.comp.glsl");
-  glBindImageTexture(0, table.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-  program.use();
-  glDispatchCompute(kReflectedSize / 8, kReflectedSize / 8, 1);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  return table;
-}
 
 /// u in [0, 1) to the tent density 1 - |x| on [-1, 1].
 float toTent(float u) { return u < 0.5f ? std::sqrt(2.0f * u) - 1.0f : 1.0f - std::sqrt(2.0f - 2.0f * u); }
@@ -65,11 +49,9 @@ struct Renderer::Impl {
   Impl(const scene::Scene& s, const ShadowOptions& options)
       : scene(s),
         shadows(options),
-        depth_only(Program::draw("surface.vert.glsl", "depth.frag.glsl")),
         tone(Program::draw("fullscreen.vert.glsl", "tone.frag.glsl")),
         fxaa(Program::draw("fullscreen.vert.glsl", "fxaa.frag.glsl")),
         white(whiteArray()),
-        reflected(reflectedTable()),
         none(VertexArray::make()),
         lights_buffer(0) {}
 
@@ -85,18 +67,14 @@ struct Renderer::Impl {
 
   GpuScene scene;
   ShadowMaps shadows;
-  /// The program of a view, with glossy lobes or without; made when it is first asked for.
-  const Program& surfaceFor(const FrameSettings& frame);
-
-  std::map<std::pair<View, bool>, Program> surfaces;
-  Program depth_only, tone, fxaa;
-  Texture white, reflected, value, label, bent, obscurance;
+  SurfacePass surfaces;
+  Program tone, fxaa;
+  Texture white, value, label, bent, obscurance;
   std::optional<TexelPass> irradiance;
   std::optional<Relighting> relighting;
   VertexArray none;
   Buffer lights_buffer;
   std::size_t lights_room = 0;
-  Vec3 without_label{0.2f};
   LightSet shown;  ///< whose shadows and factors are current
   Vec2 shown_sample{-1};
   bool stale = true;  ///< all shadows and factors
@@ -156,15 +134,6 @@ void Renderer::Impl::setSize(IVec2 wanted) {
   toned = {};
 }
 
-const Program& Renderer::Impl::surfaceFor(const FrameSettings& frame) {
-  Program& program = surfaces[{frame.view, frame.full_materials}];
-  if (!program)
-    program = Program::draw("surface.vert.glsl", "surface.frag.glsl",
-                            "#define VIEW " + std::to_string(static_cast<int>(frame.view)) +
-                                "\n#define FULL " + (frame.full_materials ? "1u\n" : "0u\n"));
-  return program;
-}
-
 void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
   setSize(frame.size);
   glBindFramebuffer(GL_FRAMEBUFFER, target.name());
@@ -174,67 +143,18 @@ void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
   glDepthMask(GL_TRUE);
   glClearBufferfv(GL_COLOR, 0, clear);
   glClearBufferfv(GL_DEPTH, 0, &far);
-  glEnable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  glDepthFunc(GL_GREATER);
-
   const Vec2 extent(static_cast<float>(size.x), static_cast<float>(size.y));
   // A sample to the right of the centre sees what a picture moved to the left shows there.
-  const Mat4 clip = clipFromWorld(frame.camera, scene.bounds(), extent.x / extent.y,
-                                  Vec2(-2.0f, 2.0f) * frame.jitter / extent);
-  scene.bind();
-  std::vector<const GpuScene::Drawn*> solid, clear_ones;
-  for (const GpuScene::Drawn& d : scene.drawn())
-    if (mayBeSeen(d.box, clip)) (d.translucent ? clear_ones : solid).push_back(&d);
-  const Point eye(frame.camera.world_from_camera[3]);
-  std::stable_sort(clear_ones.begin(), clear_ones.end(), [&](const auto* a, const auto* b) {
-    return glm::distance(a->box.centre(), eye) > glm::distance(b->box.centre(), eye);
-  });
-  {
-    const TimedPass pass(timer, "depth");
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    depth_only.use();
-    depth_only.set("u_clip_from_world", clip);
-    for (const GpuScene::Drawn* d : solid) scene.draw(*d, depth_only, false);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  }
-  const TimedPass pass(timer, "surfaces");
-  glDepthFunc(GL_GEQUAL);
-  glDepthMask(GL_FALSE);
-  const Program& surface = surfaceFor(frame);
+  const Eye eye{.clip_from_world = clipFromWorld(frame.camera, scene.bounds(), extent.x / extent.y,
+                                                 Vec2(-2.0f, 2.0f) * frame.jitter / extent),
+                .position = Point(frame.camera.world_from_camera[3]),
+                .forward = -glm::normalize(Vec3(frame.camera.world_from_camera[2])),
+                .orthographic = frame.camera.ortho_height > 0};
   lights_buffer.bindStorage(1);
-  shadows.bind(surface);
-  values(frame.view).bind(kValueUnit);
-  (label ? label : white).bind(kLabelUnit);
-  (bent ? bent : white).bind(kBentUnit);
-  (obscurance ? obscurance : white).bind(kObscuranceUnit);
-  reflected.bind(kReflectedUnit);
-  surface.use();
-  surface.set("u_clip_from_world", clip);
-  surface.set("u_light_count", static_cast<int>(frame.lights.size()));
-  surface.set("u_eye", eye);
-  surface.set("u_forward", -glm::normalize(Vec3(frame.camera.world_from_camera[2])));
-  surface.set("u_orthographic", frame.camera.ortho_height > 0 ? 1u : 0u);
-  surface.set("u_ambient", frame.ambient.rgb);
-  surface.set("u_beta", frame.beta);
-  surface.set("u_without_label", without_label);
-  surface.set("u_direct_gain", frame.direct_gain);
-  surface.set("u_indirect_gain", frame.indirect_gain);
-  surface.set("u_obscurance_gain", obscurance ? frame.obscurance_gain : 0.0f);
-  const auto draw = [&](const GpuScene::Drawn& d) {
-    surface.set("u_page", d.page);
-    surface.set("u_has_tangents", d.tangents ? 1u : 0u);
-    surface.set("u_mirror", d.mirrored ? -1.0f : 1.0f);
-    scene.draw(d, surface, true);
-  };
-  for (const GpuScene::Drawn* d : solid) draw(*d);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  for (const GpuScene::Drawn* d : clear_ones) draw(*d);
-  glDisable(GL_BLEND);
-  glDepthMask(GL_TRUE);
+  surfaces.draw(
+      frame, scene, shadows, eye,
+      {values(frame.view), label ? label : white, bent ? bent : white, obscurance ? obscurance : white},
+      static_cast<bool>(obscurance), timer);
 }
 
 Renderer::Renderer(const scene::Scene& scene, const ShadowOptions& shadows) {
@@ -254,7 +174,7 @@ void Renderer::setObscurance(const asset::AtlasTable& atlas, const asset::Plane&
   impl_->obscurance = planeTexture(atlas, plane);
 }
 void Renderer::setLabels(const asset::AtlasTable& atlas, std::span<const Vec3> colours, Vec3 elsewhere) {
-  impl_->without_label = elsewhere;
+  impl_->surfaces.without_label = elsewhere;
   impl_->label = labelTexture(atlas, colours);
 }
 void Renderer::setIrradiance(const asset::AtlasTable& atlas, std::span<const Irradiance> texels) {

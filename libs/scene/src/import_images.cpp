@@ -32,6 +32,7 @@ std::vector<bool> neededTextures(const Scene& scene, const ImportOptions& option
     need(m.metallic_roughness_texture, light && !m.unlit);
     need(m.emission_texture, light && !m.unlit && m.emission != Vec3(0));
     need(m.normal_texture, options.normal_maps);
+    need(m.height_texture, options.normal_maps);
   }
   return needed;
 }

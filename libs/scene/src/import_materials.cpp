@@ -110,6 +110,14 @@ Material MaterialReader::read(const Value& json) {
   m.normal_texture = texture(json["normalTexture"], false);
   m.normal_scale = json["normalTexture"]["scale"].real(1);
 
+  if (const Value height = json.notes()["height"]) {
+    m.height_texture = texture(height, false);
+    m.height_scale = height["scale"].real(m.height_scale);
+    if (!(m.height_scale > 0 && m.height_scale <= 1))
+      height.fail(ErrorCode::kInvalidValue, fmt::format("has a scale of {}", m.height_scale),
+                  "it is the depth of the relief as a share of the map's width, above 0 and at most 1");
+  }
+
   const float strength = json.extension("KHR_materials_emissive_strength")["emissiveStrength"].real(1);
   m.emission = glm::max(json["emissiveFactor"].vec3(Vec3(0)), Vec3(0)) * std::max(strength, 0.0f);
   if (!isFinite(m.emission)) json.fail(ErrorCode::kInvalidValue, "its emission is not a finite number");

@@ -179,8 +179,9 @@ void MeshReader::readAttributes(PrimitiveReader& reader, const Material& materia
   normalizeNormals(mesh);
 
   for (const std::uint32_t set : {0u, 1u}) readUv(reader, set, mesh);
-  for (const TextureRef* ref : {&material.base_colour_texture, &material.metallic_roughness_texture,
-                                &material.emission_texture, &material.normal_texture})
+  for (const TextureRef* ref :
+       {&material.base_colour_texture, &material.metallic_roughness_texture, &material.emission_texture,
+        &material.normal_texture, &material.height_texture})
     if (*ref && ref->uv_set > 1 && mesh.uv[ref->uv_set].empty()) readUv(reader, ref->uv_set, mesh);
 
   if (options_.normal_maps && material.normal_texture)

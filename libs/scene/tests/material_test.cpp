@@ -32,6 +32,20 @@ std::size_t addTexture(GltfBuilder& b, const std::vector<std::byte>& file, const
   return b.push("textures", {{"source", image}});
 }
 
+TEST(Material, NamesItsHeightMap) {
+  GltfBuilder b = withMaterial({{"extras", {{"relume", {{"height", {{"index", 0}, {"scale", 0.125}}}}}}}});
+  addTexture(b, png(Vec3(0.5f)));
+  const Scene read = b.scene({.normal_maps = true});
+  const Material& m = read.materials[0];
+  ASSERT_TRUE(m.height_texture);
+  EXPECT_EQ(m.height_scale, 0.125f);
+  EXPECT_FALSE(read.textures[m.height_texture.texture].srgb);
+  EXPECT_TRUE(read.textures[m.height_texture.texture].image);
+  EXPECT_FALSE(b.scene().textures[m.height_texture.texture].image);  // nobody needs it
+  b.doc["materials"][0]["extras"]["relume"]["height"]["scale"] = -1;
+  EXPECT_THROW(b.scene(), Error);
+}
+
 TEST(Material, ReadsTheFactors) {
   GltfBuilder b = withMaterial(
       {{"name", "m"},

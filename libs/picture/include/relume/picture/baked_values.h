@@ -12,11 +12,18 @@
 
 namespace relume::picture {
 
+/// W of the layer of that name, or of the first spectral one, else the first obscurance (PictureOptions).
+/// Throws Error kNoSuchLayer, kCorruptAsset.
+const asset::Plane& obscurancePlane(const asset::Asset& asset, const std::string& layer);
+
 class BakedValues {
  public:
   /// Chooses the layer that `view` shows and checks that scene and asset belong together; see render() for
   /// what is thrown.
   BakedValues(const scene::Scene& scene, const asset::Asset* asset, View view, const std::string& layer);
+
+  /// What obscurance() looks up from now on.
+  void useObscurance(const asset::Plane& plane) { obscurance_ = &plane; }
 
   /// Where a surface lies in the atlas: page and place in texels, (0, 0) being the corner of texel (0, 0).
   struct Place {
@@ -28,6 +35,8 @@ class BakedValues {
 
   /// The layer's value, grey or RGB; 1 where the view has no value plane.
   Vec3 value(const Place& place) const;
+  /// W of useObscurance(); 1 without.
+  Vec3 obscurance(const Place& place) const;
   /// World, unit; `fallback` where the bake has none (nothing open).
   Normal bentNormal(const Place& place, Normal fallback) const;
   /// Index into the asset's AtlasTable of the texel at that place; nothing when no surface covers it.
@@ -47,6 +56,7 @@ class BakedValues {
   const asset::Layer* layer_ = nullptr;
   const asset::Plane* value_ = nullptr;
   const asset::Plane* bent_ = nullptr;
+  const asset::Plane* obscurance_ = nullptr;
 };
 
 }  // namespace relume::picture

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pictures of a scene and its bake, by rays on the CPU: what `relume render --renderer cpu` shows.
+// Based on:
+//   [LPM] Umenhoffer, Szirmay-Kalos, Szecsi, Toth. Global Illumination in Games with Multi-scale PRT, 2009.
 #pragma once
 #include <string>
 
@@ -60,7 +62,14 @@ struct PictureOptions {
   LightSet lights;        ///< world space
   Vec3 background{0.0f};  ///< linear
   Gloss gloss = Gloss::kGgx;
+  /// Of kRelit and kIndirect, [LPM] section 10 with W an obscurance or spectral layer:
+  /// indirect light becomes I (1 - obscurance + obscurance W) + bounce W E, E the direct irradiance.
+  float obscurance = 0, bounce = 0;
+  std::string obscurance_layer;  ///< whose W that is; empty: the first spectral, else obscurance layer
 };
+
+/// Whether a picture asks for W of an obscurance layer beside what its view shows.
+bool weightsByObscurance(const PictureOptions& options);
 
 /// Whether a layer holds transfer of light; a view of it wants its plane "value" filled with the irradiance
 /// that the run time made of it.

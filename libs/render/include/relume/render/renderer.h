@@ -61,7 +61,13 @@ struct FrameSettings {
   Vec3 background{0.0f};        ///< linear
   bool full_materials = false;  ///< glTF's lobes and normal maps, else Lambert's alone
   float direct_gain = 1.0f, indirect_gain = 1.0f;
-  float obscurance_gain = 0.0f;  ///< share by which setObscurance darkens indirect light
+  /// [LPM] 10 with W of setObscurance: indirect light is I (1 - obscurance_gain + obscurance_gain W) +
+  /// bounce_gain W E, E the direct irradiance.
+  float obscurance_gain = 0.0f, bounce_gain = 0.0f;
+  /// Height maps of materials (scene::Material), with full materials: relief by cone stepping, shadows that
+  /// it throws on itself, and the share of W(alpha, gamma, h) ([LPM] 9) by which it darkens indirect light.
+  bool relief_steps = true, relief_shadows = true;
+  float small_scale_gain = 1.0f;
   Vec2 jitter{0.0f};             ///< pixels, from their centres
   Vec2 area_sample{0.5f, 0.5f};  ///< which point of area lights casts their shadows, [0, 1)^2
 };

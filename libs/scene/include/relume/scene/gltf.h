@@ -54,7 +54,7 @@ enum class TextureUse : std::uint8_t {
 
 struct ImportOptions {
   TextureUse textures = TextureUse::kLight;
-  bool normal_maps = false;  ///< also decode normal textures and read tangents
+  bool normal_maps = false;  ///< also decode normal textures and height maps, and read tangents
 };
 
 /// Scene data of the document's default scene (its first where none is named, all root nodes where there is

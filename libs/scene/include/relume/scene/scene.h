@@ -74,6 +74,10 @@ struct Material {
   TextureRef metallic_roughness_texture;
   TextureRef normal_texture;
   float normal_scale = 1.0f;
+  /// Relief (extras.relume.height): heights in the first channel, 1 on top, where the mesh is; 0 is
+  /// height_scale below it, a share of the map's width along u. Shown by OpenGL alone; rays meet the mesh.
+  TextureRef height_texture;
+  float height_scale = 0.05f;
   Vec3 emission{0.0f};  ///< emissiveFactor * emissiveStrength, radiance
   TextureRef emission_texture;
   AlphaMode alpha_mode = AlphaMode::kOpaque;
