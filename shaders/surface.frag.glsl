@@ -8,6 +8,11 @@
 #if RELIEF
 #include "relief.glsl"
 #endif
+#if OBJECT_LIGHT || NEAR_OBJECTS
+#include "objects.glsl"
+uniform int u_object, u_object_count;
+uniform float u_object_occlusion_gain;
+#endif
 
 in vec3 v_position;
 in vec3 v_normal;
@@ -47,6 +52,10 @@ const uint u_full_materials = FULL;
 const int kObscurance = 0, kOcclusion = 1, kLit = 2, kLightmap = 3, kRelit = 4, kIndirect = 5, kAlbedo = 6, kNormal = 7,
           kBentNormal = 8, kTexels = 9, kLabels = 10, kDirect = 11;
 const vec3 kWithoutBake = vec3(1.0, 0.0, 1.0);
+
+#if DIRECTIONS
+#include "directions.glsl"
+#endif
 
 float parity(vec2 p) {
   vec2 cell = floor(p);
@@ -207,11 +216,24 @@ void main() {
     colour = base.rgb + emission;
   } else {
     bool full = u_full_materials != 0u;
-    vec3 nd = full ? detailNormal(m, n) : n;
+    vec3 nd = full || DIRECTIONS > 0 ? detailNormal(m, n) : n;
 #if RELIEF
     if (m.normal.present == 0u) nd = relief.normal;
 #endif
     if (dot(nd, ng) <= 0.0) nd = n;
+#if DIRECTIONS
+    {
+      // Light is known on the side that the normal points to; seen from behind it is shown likewise.
+      bool behind = gl_FrontFacing != (u_mirror > 0.0);
+      vec3 own = behind ? -n : n, turned = behind ? -nd : nd;
+      vec3 eye = behind ? reflect(to_viewer, own) : to_viewer;
+      if (dot(turned, eye) <= 0.0) turned = own;
+      vec3 light = directionalLight(atlas_uv, max(u_page, 0), own, turned, eye, base.rgb, clamp(metallic, 0.0, 1.0), roughness,
+                                    base.rgb * value * kInvPi);
+      o_colour = vec4(light + emission, opacity);
+      return;
+    }
+#endif
     float cos_o = max(dot(nd, to_viewer), kLeastCosine);
     Lobes lobes;
     if (full) {
@@ -229,8 +251,8 @@ void main() {
         float factor = incidentFactor(light, way, r);
         incident += factor * light.strength_area.rgb;
         float cos_i = dot(nd, way);
-        if (factor <= 0.0 || cos_i <= 0.0 || dot(ng, way) <= 0.0) continue;
-        float seen = visibility(light, v_position, ng);
+        if (factor <= 0.0 || cos_i <= 0.0 || dot(n, way) <= 0.0) continue;
+        float seen = visibility(light, v_position, n);
 #if RELIEF
         if (u_relief_shadows != 0u) seen *= reliefVisibility(relief.place, crossed(relief, way, n));
 #endif
@@ -239,12 +261,22 @@ void main() {
         if (full) glossy += e * specularLobe(lobes, nd, way, to_viewer, cos_i, cos_o);
       }
     }
-    vec3 indirect = u_ambient;
+    vec3 indirect = u_ambient, around = vec3(0.0);  // the latter for glossy lobes, where they know better
     if (u_view == kLightmap) {
       direct = baked ? value : u_ambient;
       indirect = vec3(0.0);
     } else if (u_view == kRelit || u_view == kIndirect) {
       indirect += baked ? value * u_indirect_gain : vec3(0.0);
+      around = indirect;
+#if OBJECT_LIGHT == 1
+      around += u_indirect_gain * kPi * surroundingsRadiance(u_object, v_position, reflect(-to_viewer, nd), roughness * roughness);
+      indirect += u_indirect_gain * surroundingsIrradiance(u_object, v_position, nd);
+#elif OBJECT_LIGHT == 2
+      around += u_indirect_gain * probeIrradiance(u_object, v_position, reflect(-to_viewer, nd));
+      indirect += u_indirect_gain * probeIrradiance(u_object, v_position, nd);
+#elif NEAR_OBJECTS
+      indirect *= mix(1.0, leftByObjects(u_object_count, v_position, nd), u_object_occlusion_gain);
+#endif
     } else if (u_view == kDirect) {
       indirect = vec3(0.0);
     } else if (baked) {
@@ -267,9 +299,13 @@ void main() {
     vec3 seen = u_view == kIndirect ? vec3(0.0) : emission;
     if (full && u_view != kIndirect)
       // Indirect light has no direction here: the glossy lobes take it as coming from all sides alike.
-      colour = (lobes.diffuse * (direct + indirect) + lobes.glossy * indirect) * kInvPi + glossy + seen;
+      colour = (lobes.diffuse * (direct + indirect) + lobes.glossy * (OBJECT_LIGHT != 0 ? around : indirect)) * kInvPi + glossy + seen;
     else
       colour = base.rgb * (direct + indirect) * kInvPi + seen;
   }
+#if SURROUNDINGS
+  o_colour = vec4(min(colour, vec3(6e4)), 1.0 / distance(v_position, u_eye));
+#else
   o_colour = vec4(colour, opacity);
+#endif
 }

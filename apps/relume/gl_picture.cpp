@@ -88,6 +88,10 @@ void showOnAtlas(render::Renderer& renderer, const scene::Scene& scene, const as
       return renderer.setTransfer(*asset, *found);
   }
   const picture::BakedValues baked(scene, asset, view, layer);
+  if (view == picture::View::kLightmap && baked.layer() && baked.layer()->kind == "directional") {
+    renderer.setValues(asset->atlas, *baked.valuePlane());
+    return renderer.setDirections(*asset, *baked.layer());
+  }
   if (view == picture::View::kLightmap && baked.layer() && picture::isDirectional(*baked.layer()))
     throw Error(ErrorCode::kUnsupported, "layer " + baked.layer()->name,
                 "keeps light by direction, which OpenGL does not show here", "take --renderer cpu");
@@ -98,13 +102,38 @@ void showOnAtlas(render::Renderer& renderer, const scene::Scene& scene, const as
                        view == picture::View::kCharts ? kNoChart : kWithoutBake);
 }
 
+render::ObjectLight objectLightOf(const std::string& name) {
+  return name == "probes" ? render::ObjectLight::kProbes
+         : name == "none" ? render::ObjectLight::kNone
+                          : render::ObjectLight::kCube;
+}
+
+bool isProbeLayer(const asset::Layer& layer) {
+  const auto found = layer.parameters.find("exits");
+  return layer.kind == "lightpath" && found != layer.parameters.end() &&
+         found->second == asset::Parameter(std::string("probes"));
+}
+
+void addObjects(render::Renderer& renderer, const scene::Scene& scene, const asset::Asset* asset,
+                const std::vector<Group>& groups, render::ObjectLight light) {
+  for (const Group& group : groups) renderer.addObject(objectOf(scene, group));
+  if (groups.empty() || light != render::ObjectLight::kProbes) return;
+  if (asset)
+    for (const asset::Layer& layer : asset->layers)
+      if (isProbeLayer(layer)) return renderer.setProbes(*asset, layer);
+  throw Error(ErrorCode::kNoSuchLayer, "the bake", "has no probes to light objects by",
+              "bake lightpath:exits=probes, or take --object-light cube");
+}
+
 image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
                        const picture::Viewpoint& viewpoint, const picture::PictureOptions& options,
                        const GlExtras& extras) {
   const render::HeadlessContext context;
   render::Renderer renderer(scene, kFineShadows);
   showOnAtlas(renderer, scene, asset, options.view, options.layer);
+  addObjects(renderer, scene, asset, extras.objects, extras.object_light);
   render::FrameSettings frame;
+  frame.object_light = extras.object_light;
   frame.size = {options.width, options.height};
   frame.camera = cameraOf(viewpoint);
   frame.view = viewFor(options.view);
@@ -112,6 +141,9 @@ image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
   frame.ambient = options.ambient;
   frame.beta = options.beta;
   frame.background = options.background;
+  frame.gloss = options.gloss == picture::Gloss::kNone    ? render::Gloss::kNone
+                : options.gloss == picture::Gloss::kPhong ? render::Gloss::kPhong
+                                                          : render::Gloss::kGgx;
   frame.full_materials = extras.full_materials;
   frame.relief_steps = extras.relief_steps, frame.relief_shadows = extras.relief_shadows;
   frame.small_scale_gain = extras.small_scale;

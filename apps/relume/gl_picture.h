@@ -4,6 +4,7 @@
 #include <string>
 
 #include "files.h"
+#include "objects.h"
 #include "relume/picture/picture.h"
 #include "relume/render/renderer.h"
 
@@ -26,7 +27,20 @@ struct GlExtras {
   bool full_materials = false;  ///< glTF's lobes, normal maps, and relief:
   bool relief_steps = true, relief_shadows = true;
   float small_scale = 1;
+  std::vector<Group> objects;
+  render::ObjectLight object_light = render::ObjectLight::kCube;
 };
+
+/// "cube", "probes" or "none".
+render::ObjectLight objectLightOf(const std::string& name);
+
+/// Whether light of this layer leaves at probes.
+bool isProbeLayer(const asset::Layer& layer);
+
+/// Tells the renderer of objects, and of the bake's probes where they are to light them. Throws Error
+/// kNoSuchLayer without probes.
+void addObjects(render::Renderer& renderer, const scene::Scene& scene, const asset::Asset* asset,
+                const std::vector<Group>& groups, render::ObjectLight light);
 
 /// The picture that picture::render makes, without a window, and with extras. Throws as picture::render, and
 /// Error kUnsupported where there is no OpenGL.

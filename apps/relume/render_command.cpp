@@ -35,6 +35,8 @@ struct RenderOptions {
   std::optional<int> spp, bounces;
   std::uint64_t seed = 1;
   std::string obscurance_layer;
+  std::vector<std::string> objects;
+  std::string object_light = "cube";
   std::vector<std::string> relief{"steps", "shadows", "occlusion"};
   float fov_deg = 50, beta = 0.1f, obscurance = 0, bounce = 0;
   int camera = -1;
@@ -102,6 +104,7 @@ void writePicture(const RenderOptions& options, const image::Image& linear, View
 void renderReference(const RenderOptions& options, Progress& progress) {
   const auto opened = open(options.input, {.normal_maps = true});
   const IVec2 size = parseExtent(options.size, "--size");
+  for (const std::string& object : options.objects) addObject(opened->scene, object);
   lightScene(opened->scene, options.lights, options.ambient);
   transport::ReferenceOptions how;
   how.target_error = options.error.value_or(0.0f);
@@ -139,14 +142,16 @@ bool showsOwnLight(const Opened& opened, const std::string& layer) {
 }
 
 /// What OpenGL shows and rays do not.
-GlExtras extrasOf(const RenderOptions& options) {
+GlExtras extrasOf(const RenderOptions& options, const std::vector<Group>& objects) {
   const auto relief = [&](const char* part) {
     return std::find(options.relief.begin(), options.relief.end(), part) != options.relief.end();
   };
   return {.full_materials = options.materials == "full",
           .relief_steps = relief("steps"),
           .relief_shadows = relief("shadows"),
-          .small_scale = relief("occlusion") ? 1.0f : 0.0f};
+          .small_scale = relief("occlusion") ? 1.0f : 0.0f,
+          .objects = objects,
+          .object_light = objectLightOf(options.object_light)};
 }
 
 void renderPicture(const RenderOptions& options, Progress& progress) {
@@ -162,6 +167,8 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
     throw Error(ErrorCode::kUsage, "--materials full", "is not what rays show of a relit bake",
                 "add --renderer gl, or choose --mode reference");
   const auto opened = open(options.input, {.normal_maps = true});
+  std::vector<Group> objects;
+  for (const std::string& object : options.objects) objects.push_back(addObject(opened->scene, object));
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const IVec2 size = parseExtent(options.size, "--size");
   picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp.value_or(16)};
@@ -193,8 +200,9 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   if (isRelit(picture.view) && !(gl && followsLamps(*opened, options.layer)))
     relightForPicture(options, picture, *opened);
   const asset::Asset* asset = opened->asset ? &*opened->asset : nullptr;
-  const image::Image linear = gl ? glPicture(opened->scene, asset, viewpoint, picture, extrasOf(options))
-                                 : picture::render(tracer, asset, viewpoint, picture, progress);
+  const image::Image linear =
+      gl ? glPicture(opened->scene, asset, viewpoint, picture, extrasOf(options, objects))
+         : picture::render(tracer, asset, viewpoint, picture, progress);
   writePicture(options, linear, picture.view, picture.background);
 }
 
@@ -291,6 +299,16 @@ void addRender(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("--obscurance-layer", options->obscurance_layer,
                       "the layer for both; without it, the first spectral, else obscurance");
+  command->add_option(
+      "--object", options->objects,
+      "repeatable: FILE.glb@x,y,z[,turn[,scale]] puts its origin there, turned by degrees; it was "
+      "not there when the scene was baked");
+  command
+      ->add_option("--object-light", options->object_light,
+                   "with --renderer gl: indirect light on objects: of a cube map about each, of the bake's "
+                   "probes (lightpath:exits=probes), or none")
+      ->check(CLI::IsMember({"cube", "probes", "none"}))
+      ->capture_default_str();
   command
       ->add_option("--relief", options->relief,
                    "with --materials full: what height maps do, of steps, shadows and occlusion; or none")

@@ -24,6 +24,11 @@ void addView(CLI::App& app, Program& program) {
                    "camera of the file to begin with; -1: its first, or one that frames the scene")
       ->capture_default_str();
   command->add_option("--size", options->size, "of the window, width x height")->capture_default_str();
+  command->add_option("--object", options->viewer.objects,
+                      "repeatable: FILE.glb@x,y,z[,turn[,scale]], something to carry about");
+  command->add_option("--object-light", options->viewer.object_light, "what lights them beside lamps")
+      ->check(CLI::IsMember({"cube", "probes", "none"}))
+      ->capture_default_str();
   command
       ->add_option("--shadow-size", options->viewer.shadow_size,
                    "texels along a side of a shadow map's face; 0: 1024, without a GPU 256")

@@ -9,7 +9,7 @@ std::span<const SceneEntry> allScenes() {
                                            {"halls", makeHalls},         {"rooms", makeRooms},
                                            {"crossing", makeCrossing},   {"lampshade", makeLampshade},
                                            {"furniture", makeFurniture}, {"glossy_room", makeGlossyRoom},
-                                           {"courtyard", makeCourtyard}};
+                                           {"courtyard", makeCourtyard}, {"vase", makeVase}};
   return kScenes;
 }
 

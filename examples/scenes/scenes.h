@@ -35,6 +35,9 @@ GlbScene makeGlossyRoom(int detail);
 /// A corner of brick and cobbles whose relief is in height maps (docs/rendering.md).
 GlbScene makeCourtyard(int detail);
 
+/// A vase with a metal ball, to be put into other scenes.
+GlbScene makeVase(int detail);
+
 struct SceneEntry {
   const char* name;
   GlbScene (*make)(int detail);

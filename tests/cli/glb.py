@@ -160,3 +160,26 @@ def read_exr(path):
                 planes[n][start:start + width] = struct.unpack_from(f"<{width}f", raw, p)
                 p += 4 * width
     return width, height, planes
+
+
+def picture(path):
+    """Rows of an 8-bit RGB PNG file as relume writes it; row[3 * x + c] from 0 to 255."""
+    data = pathlib.Path(path).read_bytes()
+    parts, at = [], 8
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        parts.append((kind, data[at + 8:at + 8 + length]))
+        at += 12 + length
+    width, height = struct.unpack(">II", dict(parts)[b"IHDR"][:8])
+    raw = zlib.decompress(b"".join(body for kind, body in parts if kind == b"IDAT"))
+    rows, before, stride = [], bytes(3 * width), 3 * width + 1
+    for y in range(height):
+        kind, row = raw[y * stride], bytearray(raw[y * stride + 1:(y + 1) * stride])
+        for i in range(len(row)):
+            left, up, corner = (row[i - 3] if i >= 3 else 0), before[i], (before[i - 3] if i >= 3 else 0)
+            p = left + up - corner
+            a, b, c = abs(p - left), abs(p - up), abs(p - corner)
+            row[i] = (row[i] + (0, left, up, (left + up) // 2, left if a <= b and a <= c else up if b <= c else corner)[kind]) & 255
+        rows.append(bytes(row))
+        before = rows[-1]
+    return rows

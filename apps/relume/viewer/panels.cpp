@@ -162,6 +162,15 @@ void drawPanels(Stage& stage, PanelState& state) {
     }
     ImGui::Checkbox("smooth edges", &stage.fxaa);
   }
+  if (!stage.object_moved.empty() && ImGui::CollapsingHeader("Things", ImGuiTreeNodeFlags_DefaultOpen)) {
+    int light = static_cast<int>(stage.frame.object_light);
+    if (ImGui::Combo("lit by", &light,
+                     stage.has_probes ? "lamps alone\0cube maps\0probes\0" : "lamps alone\0cube maps\0"))
+      stage.frame.object_light = static_cast<render::ObjectLight>(light);
+    ImGui::SliderFloat("their occlusion", &stage.frame.object_occlusion_gain, 0, 1);
+    for (std::size_t i = 0; i < stage.object_moved.size(); ++i)
+      ImGui::DragFloat3(fmt::format("thing {}, m", i + 1).c_str(), &stage.object_moved[i].x, 0.02f);
+  }
   if (ImGui::CollapsingHeader("Lamps", ImGuiTreeNodeFlags_DefaultOpen)) lightsPanel(stage);
   if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) timesPanel(stage, state);
   if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
@@ -191,8 +200,28 @@ bool drawHandles(Stage& stage, Vec2 size) {
     const float away = glm::distance(mouse, Vec2(at));
     if (away < least) least = away, nearest = i;
   }
+  // Things are handles after the lights, square ones.
+  const int first_thing = static_cast<int>(lights.size());
+  for (std::size_t i = 0; i < stage.object_moved.size(); ++i) {
+    const Vec3 at = project(viewpoint, size, stage.objectCentre(i));
+    if (!(at.z > 0)) continue;
+    list->AddRect(ImVec2(at.x - kHandle, at.y - kHandle), ImVec2(at.x + kHandle, at.y + kHandle),
+                  IM_COL32(255, 255, 255, 220), 0, 0, 2);
+    const float away = glm::distance(mouse, Vec2(at));
+    if (away < least) least = away, nearest = first_thing + static_cast<int>(i);
+  }
   if (!ImGui::IsMouseDown(0)) dragged = -1;
-  if (ImGui::IsMouseClicked(0) && !io.WantCaptureMouse && nearest >= 0) dragged = stage.selected = nearest;
+  if (ImGui::IsMouseClicked(0) && !io.WantCaptureMouse && nearest >= 0) {
+    dragged = nearest;
+    if (nearest < first_thing) stage.selected = nearest;
+  }
+  if (dragged >= first_thing) {
+    const auto thing = static_cast<std::size_t>(dragged - first_thing);
+    const Point centre = stage.objectCentre(thing);
+    const float depth = project(viewpoint, size, centre).z;
+    if (depth > 0 && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0))
+      stage.object_moved[thing] += unproject(viewpoint, size, Vec3(mouse, depth)) - centre;
+  }
   if (dragged >= 0 && dragged < static_cast<int>(lights.size())) {
     Light& l = lights[static_cast<std::size_t>(dragged)];
     const float depth = project(viewpoint, size, l.position).z;

@@ -12,6 +12,7 @@
 #include "relume/image/colour.h"
 #include "relume/picture/baked_values.h"
 #include "relume/render/context.h"
+#include "relume/scene/merge.h"
 
 namespace relume::app {
 namespace {
@@ -68,6 +69,8 @@ Light lampFor(const Box3& box) {
 
 Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
     : camera({}, 1), opened_(open(file, {.normal_maps = true})), layer_(options.layer) {
+  std::vector<Group> groups;
+  for (const std::string& object : options.objects) groups.push_back(addObject(opened_->scene, object));
   const scene::Scene& scene = opened_->scene;
   const asset::Asset* asset = opened_->asset ? &*opened_->asset : nullptr;
   const int shadows = options.shadow_size    ? options.shadow_size
@@ -91,6 +94,12 @@ Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
   has_obscurance =
       has(asset, [](const asset::Layer& l) { return l.kind == "obscurance" || l.kind == "spectral"; });
   if (has_obscurance) renderer_->setObscurance(asset->atlas, picture::obscurancePlane(*asset, ""));
+  has_probes = has(asset, isProbeLayer);
+  addObjects(*renderer_, scene, asset, groups,
+             has_probes ? render::ObjectLight::kProbes : objectLightOf(options.object_light));
+  frame.object_light = objectLightOf(options.object_light);
+  for (const Group& group : groups) object_centre_.push_back(scene::boundsOf(scene, group).centre());
+  object_moved.assign(groups.size(), Vec3(0));
   has_relief = std::any_of(scene.materials.begin(), scene.materials.end(),
                            [](const scene::Material& m) { return static_cast<bool>(m.height_texture); });
   views_ = viewsOf(asset);
@@ -123,6 +132,11 @@ void Stage::showView() {
 void Stage::draw(IVec2 size, bool present) {
   frame.size = size;
   frame.camera = cameraOf(camera.viewpoint());
+  for (std::size_t i = 0; i < object_moved.size(); ++i) {
+    Mat4 place(1);
+    place[3] = Vec4(object_moved[i], 1);
+    renderer_->placeObject(i, place);
+  }
   renderer_->draw(frame);
   const bool data = frame.view == render::View::kOcclusion || frame.view >= render::View::kAlbedo;
   const bool lit = !data || frame.view == render::View::kDirect;

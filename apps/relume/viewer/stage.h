@@ -44,6 +44,11 @@ class Stage {
   bool has_relief = false;      ///< some material has a height map
   bool has_obscurance = false;  ///< the bake has W for frame.obscurance_gain and .bounce_gain
 
+  /// Things that can be carried about: how far from where they were put.
+  std::vector<Vec3> object_moved;
+  Point objectCentre(std::size_t object) const { return object_centre_[object] + object_moved[object]; }
+  bool has_probes = false;
+
   const std::vector<render::PassTime>& times() const { return times_; }
   const std::string& caption() const { return caption_; }
   image::Image screenshot() const;  ///< as displayed, without panels
@@ -51,6 +56,7 @@ class Stage {
  private:
   void showView();
 
+  std::vector<Point> object_centre_;
   std::string caption_;
   std::unique_ptr<Opened> opened_;
   std::vector<StageView> views_;

@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "relume/core/light.h"
 #include "relume/core/vec.h"
@@ -11,8 +12,10 @@ namespace relume::app {
 
 struct ViewerOptions {
   std::filesystem::path file;
-  std::string lights;  ///< a light file; empty: the scene's lights
-  std::string layer;   ///< of transfer; empty: the first
+  std::string lights;                ///< a light file; empty: the scene's lights
+  std::string layer;                 ///< of transfer; empty: the first
+  std::vector<std::string> objects;  ///< FILE.glb@x,y,z, put into the scene
+  std::string object_light = "cube";
   int camera = -1;
   IVec2 size{1280, 720};
   int shadow_size = 0;     ///< texels along a cube's face; 0: by the device

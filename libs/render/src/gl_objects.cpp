@@ -73,10 +73,17 @@ Texture Texture::makeCube(GLenum format, int size) {
   return t;
 }
 
-Texture Texture::makeCubeArray(GLenum format, int size, int cubes) {
+Texture Texture::makeCubeArray(GLenum format, int size, int cubes, bool mipmaps) {
   Texture t(createTexture(GL_TEXTURE_CUBE_MAP_ARRAY));
-  glTextureStorage3D(t.name(), 1, format, size, size, 6 * cubes);
+  const int levels = mipmaps ? static_cast<int>(std::bit_width(static_cast<unsigned>(size))) : 1;
+  glTextureStorage3D(t.name(), levels, format, size, size, 6 * cubes);
   t.plain(true);
+  return t;
+}
+
+Texture Texture::make3d(GLenum format, int width, int height, int depth) {
+  Texture t(createTexture(GL_TEXTURE_3D));
+  glTextureStorage3D(t.name(), 1, format, width, height, depth);
   return t;
 }
 
@@ -85,6 +92,7 @@ void Texture::plain(bool linear) {
   parameter(GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
   parameter(GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   parameter(GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  parameter(GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
 Framebuffer Framebuffer::make() {

@@ -84,7 +84,8 @@ class Texture : public Handle<DeleteTexture> {
   static Texture make2d(GLenum format, IVec2 size, bool mipmaps = false);
   static Texture makeArray(GLenum format, IVec2 size, int layers);
   static Texture makeCube(GLenum format, int size);
-  static Texture makeCubeArray(GLenum format, int size, int cubes);
+  static Texture makeCubeArray(GLenum format, int size, int cubes, bool mipmaps = false);
+  static Texture make3d(GLenum format, int width, int height, int depth);
   void parameter(GLenum name, GLint value) { glTextureParameteri(this->name(), name, value); }
   /// Bilinear (or nearest) and clamped to its edge.
   void plain(bool linear);

@@ -10,10 +10,13 @@
 
 #include "atlas_textures.h"
 #include "camera_matrix.h"
+#include "direction_light.h"
+#include "dynamic_objects.h"
 #include "gl_objects.h"
 #include "gpu_lights.h"
 #include "gpu_scene.h"
 #include "pass_timer.h"
+#include "probe_light.h"
 #include "relighting.h"
 #include "relume/core/sampling.h"
 #include "relume/render/context.h"
@@ -58,6 +61,15 @@ struct Renderer::Impl {
   /// Which of the frame's lights changed, with shadow maps drawn for them.
   std::vector<std::uint8_t> updateLights(const FrameSettings& frame);
   void relight(std::span<const std::uint8_t> changed);
+  void lightObjects(const FrameSettings& frame, std::span<const std::uint8_t> changed);
+  SurfaceTextures textures(View view) const {
+    return {values(view),
+            label ? label : white,
+            bent ? bent : white,
+            obscurance ? obscurance : white,
+            static_cast<bool>(obscurance),
+            directions ? &*directions : nullptr};
+  }
   void drawSurfaces(const FrameSettings& frame);
   void setSize(IVec2 size);
   const Texture& values(View view) const {
@@ -72,6 +84,12 @@ struct Renderer::Impl {
   Texture white, value, label, bent, obscurance;
   std::optional<TexelPass> irradiance;
   std::optional<Relighting> relighting;
+  std::optional<ProbeLight> probes;
+  std::optional<DirectionLight> directions;
+  DynamicObjects objects;
+  std::vector<Mat4> at_start;  ///< world_from_local by drawn instance, when its object was added
+  bool objects_moved = false;
+  ObjectLight objects_lit_by = ObjectLight::kNone;
   VertexArray none;
   Buffer lights_buffer;
   std::size_t lights_room = 0;
@@ -122,6 +140,31 @@ void Renderer::Impl::relight(std::span<const std::uint8_t> changed) {
   relighting->run(changed, timer);
 }
 
+void Renderer::Impl::lightObjects(const FrameSettings& frame, std::span<const std::uint8_t> changed) {
+  const bool lit = frame.view == View::kRelit || frame.view == View::kIndirect;
+  if (objects.empty() || !lit) return;
+  const bool anew = strength_changed || frame.object_light != objects_lit_by;
+  objects_lit_by = frame.object_light;
+  if (frame.object_light == ObjectLight::kCube) {
+    const TimedPass pass(timer, "objects");
+    FrameSettings around = frame;
+    around.view = View::kRelit;
+    around.full_materials = false;
+    lights_buffer.bindStorage(1);
+    objects.refreshCubes(anew, [&](const Eye& eye) {
+      surfaces.drawSurroundings(around, scene, shadows, eye, textures(View::kRelit));
+    });
+  } else if (frame.object_light == ObjectLight::kProbes && probes) {
+    if (anew) {
+      lights_buffer.bindStorage(1);
+      probes->relight(changed, shadows, timer);
+    }
+    if (anew || objects_moved)
+      objects.refreshProbes([&](Point p, Normal n) { return probes->irradiance(p, n); });
+  }
+  objects_moved = false;
+}
+
 void Renderer::Impl::setSize(IVec2 wanted) {
   if (wanted == size) return;
   size = wanted;
@@ -151,10 +194,8 @@ void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
                 .forward = -glm::normalize(Vec3(frame.camera.world_from_camera[2])),
                 .orthographic = frame.camera.ortho_height > 0};
   lights_buffer.bindStorage(1);
-  surfaces.draw(
-      frame, scene, shadows, eye,
-      {values(frame.view), label ? label : white, bent ? bent : white, obscurance ? obscurance : white},
-      static_cast<bool>(obscurance), timer);
+  surfaces.draw(frame, scene, shadows, eye, textures(frame.view), objects.empty() ? nullptr : &objects,
+                timer);
 }
 
 Renderer::Renderer(const scene::Scene& scene, const ShadowOptions& shadows) {
@@ -166,6 +207,10 @@ Renderer::~Renderer() = default;
 
 void Renderer::setValues(const asset::AtlasTable& atlas, const asset::Plane& plane) {
   impl_->value = planeTexture(atlas, plane);
+  impl_->directions.reset();
+}
+void Renderer::setDirections(const asset::Asset& asset, const asset::Layer& layer) {
+  impl_->directions.emplace(asset::directionMapsOf(layer, asset.atlas), asset.atlas);
 }
 void Renderer::setBent(const asset::AtlasTable& atlas, const asset::Plane& plane) {
   impl_->bent = planeTexture(atlas, plane);
@@ -202,10 +247,38 @@ void Renderer::place(std::uint32_t instance, const Mat4& world_from_local) {
       impl_->scene.place(i, world_from_local), impl_->stale = true;
 }
 
+std::size_t Renderer::addObject(const Object& object) {
+  Impl& r = *impl_;
+  const std::size_t added = r.objects.add(object, r.scene);
+  r.at_start.resize(r.scene.drawn().size());
+  for (std::size_t i = 0; i < r.at_start.size(); ++i)
+    if (r.objects.objectOf(r.scene.drawn()[i].instance) == static_cast<int>(added))
+      r.at_start[i] = r.scene.drawn()[i].world_from_local;
+  r.stale = r.objects_moved = true;
+  return added;
+}
+
+void Renderer::placeObject(std::size_t object, const Mat4& world_from_start) {
+  Impl& r = *impl_;
+  if (r.objects.placeOf(object) == world_from_start) return;
+  for (std::size_t i = 0; i < r.at_start.size(); ++i)
+    if (r.objects.objectOf(r.scene.drawn()[i].instance) == static_cast<int>(object))
+      r.scene.place(i, world_from_start * r.at_start[i]);
+  r.objects.place(object, world_from_start, r.scene);
+  r.stale = r.objects_moved = true;
+}
+
+void Renderer::setProbes(const asset::Asset& asset, const asset::Layer& layer) {
+  impl_->probes.reset();
+  impl_->probes.emplace(asset, layer);
+  impl_->stale = true;
+}
+
 void Renderer::draw(const FrameSettings& frame) {
   impl_->timer.beginFrame();
   const std::vector<std::uint8_t> changed = impl_->updateLights(frame);
   impl_->relight(changed);
+  impl_->lightObjects(frame, changed);
   impl_->drawSurfaces(frame);
 }
 

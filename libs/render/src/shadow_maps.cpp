@@ -7,6 +7,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "cube_faces.h"
 #include "relume/core/frame.h"
 
 namespace relume::render {
@@ -16,17 +17,6 @@ constexpr int kCubeUnit = 8, kPlaneUnit = 9;  // shaders/shadows.glsl
 constexpr std::size_t kMomentBytes = 8;
 constexpr int kLeastCube = 64;
 constexpr int kStep = 16;  // texels; sides are whole steps
-
-struct Face {
-  Vec3 forward, up;
-};
-// OpenGL's order and orientation of faces.
-constexpr std::array<Face, 6> kFaces = {{{{1, 0, 0}, {0, -1, 0}},
-                                         {{-1, 0, 0}, {0, -1, 0}},
-                                         {{0, 1, 0}, {0, 0, 1}},
-                                         {{0, -1, 0}, {0, 0, -1}},
-                                         {{0, 0, 1}, {0, -1, 0}},
-                                         {{0, 0, -1}, {0, -1, 0}}}};
 
 /// Of an empty scene some box.
 Box3 boundsOf(const GpuScene& scene) {
@@ -122,7 +112,7 @@ void ShadowMaps::drawCube(const GpuScene& scene, Point origin, int layer) {
   glProgramUniform4f(casters_.name(), glGetUniformLocation(casters_.name(), "u_light"), origin.x, origin.y,
                      origin.z, 1.0f);
   for (int face = 0; face < 6; ++face) {
-    const auto& [forward, up] = kFaces[static_cast<std::size_t>(face)];
+    const auto& [forward, up] = kCubeFaces[static_cast<std::size_t>(face)];
     framebuffer_.attachLayer(GL_COLOR_ATTACHMENT0, cube_, face);
     framebuffer_.attach(GL_DEPTH_ATTACHMENT, cube_depth_);
     drawCasters(scene, projection * glm::lookAt(origin, origin + forward, up), 1.5f * far, true);

@@ -5,6 +5,9 @@
 #include <set>
 #include <vector>
 
+#include "direction_light.h"
+#include "dynamic_objects.h"
+
 namespace relume::render {
 namespace {
 
@@ -51,15 +54,57 @@ SurfacePass::SurfacePass()
 const Program& SurfacePass::programOf(const Variant& variant) {
   Program& program = programs_[variant];
   if (!program)
-    program = Program::draw("surface.vert.glsl", "surface.frag.glsl",
-                            "#define VIEW " + std::to_string(static_cast<int>(variant.view)) +
-                                "\n#define FULL " + (variant.full ? "1u" : "0u") + "\n#define RELIEF " +
-                                (variant.relief ? "1\n" : "0\n"));
+    program =
+        Program::draw("surface.vert.glsl", "surface.frag.glsl",
+                      "#define VIEW " + std::to_string(static_cast<int>(variant.view)) + "\n#define FULL " +
+                          (variant.full ? "1u" : "0u") + "\n#define RELIEF " + (variant.relief ? "1" : "0") +
+                          "\n#define OBJECT_LIGHT " + std::to_string(static_cast<int>(variant.object_light)) +
+                          "\n#define NEAR_OBJECTS " + (variant.near_objects ? "1" : "0") +
+                          "\n#define SURROUNDINGS " + (variant.surroundings ? "1" : "0") +
+                          "\n#define DIRECTIONS " + std::to_string(variant.directions) + "\n#define GLOSS " +
+                          std::to_string(static_cast<int>(variant.gloss)) + "\n");
   return program;
 }
 
+void SurfacePass::bind(const SurfaceTextures& textures) const {
+  textures.value.bind(kValueUnit);
+  textures.label.bind(kLabelUnit);
+  textures.bent.bind(kBentUnit);
+  textures.obscurance.bind(kObscuranceUnit);
+  reflected_.bind(kReflectedUnit);
+}
+
+void SurfacePass::drawSurroundings(const FrameSettings& frame, const GpuScene& scene,
+                                   const ShadowMaps& shadows, const Eye& eye,
+                                   const SurfaceTextures& textures) {
+  const GLfloat clear[4] = {frame.background.x, frame.background.y, frame.background.z, 0};
+  constexpr GLfloat kFar = 0.0f;
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+  glClearBufferfv(GL_COLOR, 0, clear);
+  glClearBufferfv(GL_DEPTH, 0, &kFar);
+  scene.bind();
+  bind(textures);
+  const Program& surface = programOf({.view = frame.view, .surroundings = true});
+  shadows.bind(surface);
+  setFrame(surface, frame, eye, textures.has_obscurance, without_label);
+  surface.use();
+  for (const GpuScene::Drawn& d : scene.drawn()) {
+    if (d.dynamic || d.translucent || !mayBeSeen(d.box, eye.clip_from_world)) continue;
+    surface.set("u_page", d.page);
+    surface.set("u_has_tangents", d.tangents ? 1u : 0u);
+    surface.set("u_mirror", d.mirrored ? -1.0f : 1.0f);
+    scene.draw(d, surface, true);
+  }
+}
+
 void SurfacePass::draw(const FrameSettings& frame, const GpuScene& scene, const ShadowMaps& shadows,
-                       const Eye& eye, const SurfaceTextures& textures, bool obscurance, PassTimer& timer) {
+                       const Eye& eye, const SurfaceTextures& textures, DynamicObjects* objects,
+                       PassTimer& timer) {
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
@@ -84,24 +129,34 @@ void SurfacePass::draw(const FrameSettings& frame, const GpuScene& scene, const 
   const TimedPass pass(timer, "surfaces");
   glDepthFunc(GL_GEQUAL);
   glDepthMask(GL_FALSE);
-  textures.value.bind(kValueUnit);
-  textures.label.bind(kLabelUnit);
-  textures.bent.bind(kBentUnit);
-  textures.obscurance.bind(kObscuranceUnit);
-  reflected_.bind(kReflectedUnit);
+  bind(textures);
+  if (objects) objects->bind();
+  const bool lit = frame.view == View::kRelit || frame.view == View::kIndirect;
+  const bool by_direction = textures.directions && frame.view == View::kLightmap;
+  if (by_direction) textures.directions->bind();
   const bool relief =
       frame.full_materials && (frame.relief_steps || frame.relief_shadows || frame.small_scale_gain > 0);
   std::set<const Program*> ready;  // whose uniforms are those of this frame
   const Program* current = nullptr;
   const auto draw = [&](const GpuScene::Drawn& d) {
+    const int object = objects && lit && d.dynamic ? objects->objectOf(d.instance) : -1;
     const Program& surface =
-        programOf({.view = frame.view, .full = frame.full_materials, .relief = relief && scene.hasRelief(d)});
+        programOf({.view = frame.view,
+                   .full = frame.full_materials,
+                   .relief = relief && scene.hasRelief(d),
+                   .object_light = object >= 0 ? frame.object_light : ObjectLight::kNone,
+                   .near_objects = objects && lit && !d.dynamic && frame.object_occlusion_gain > 0,
+                   .directions = by_direction && d.page >= 0 ? textures.directions->directions() : 0,
+                   .gloss = by_direction && d.page >= 0 ? frame.gloss : Gloss::kNone});
     if (ready.insert(&surface).second) {
       shadows.bind(surface);
-      setFrame(surface, frame, eye, obscurance, without_label);
+      setFrame(surface, frame, eye, textures.has_obscurance, without_label);
+      surface.set("u_object_count", objects ? static_cast<int>(objects->size()) : 0);
+      surface.set("u_object_occlusion_gain", frame.object_occlusion_gain);
     }
     if (current != &surface) surface.use(), current = &surface;
     surface.set("u_page", d.page);
+    surface.set("u_object", object);
     surface.set("u_has_tangents", d.tangents ? 1u : 0u);
     surface.set("u_mirror", d.mirrored ? -1.0f : 1.0f);
     scene.draw(d, surface, true);

@@ -22,18 +22,28 @@ struct Eye {
   bool orthographic = false;
 };
 
+class DirectionLight;
+
 /// What lies on the atlas; white where there is nothing.
 struct SurfaceTextures {
   const Texture &value, &label, &bent, &obscurance;
+  bool has_obscurance = false;
+  const DirectionLight* directions = nullptr;  ///< instead of the value, in kLightmap
 };
+
+class DynamicObjects;
 
 class SurfacePass {
  public:
   SurfacePass();
   /// Into the framebuffer and viewport that are set, over what was cleared there. Lights are bound (binding
-  /// 1). `obscurance`: whether there is one.
+  /// 1), and so are objects where there are some.
   void draw(const FrameSettings& frame, const GpuScene& scene, const ShadowMaps& shadows, const Eye& eye,
-            const SurfaceTextures& textures, bool obscurance, PassTimer& timer);
+            const SurfaceTextures& textures, DynamicObjects* objects, PassTimer& timer);
+  /// The standing world for a cube map about something that moves: radiance, and in alpha the inverse of the
+  /// distance; without what is translucent.
+  void drawSurroundings(const FrameSettings& frame, const GpuScene& scene, const ShadowMaps& shadows,
+                        const Eye& eye, const SurfaceTextures& textures);
   Vec3 without_label{0.2f};
 
  private:
@@ -41,9 +51,15 @@ class SurfacePass {
   struct Variant {
     View view = View::kRelit;
     bool full = false, relief = false;
+    ObjectLight object_light = ObjectLight::kNone;  ///< of an object's surfaces
+    bool near_objects = false;                      ///< objects may hide light from it
+    bool surroundings = false;
+    int directions = 0;  ///< of a baked surface's light; 0: it has none
+    Gloss gloss = Gloss::kNone;
     auto operator<=>(const Variant&) const = default;
   };
   const Program& programOf(const Variant& variant);
+  void bind(const SurfaceTextures& textures) const;
 
   std::map<Variant, Program> programs_;
   Program depth_only_;

@@ -17,6 +17,7 @@
 #include "relume/asset/asset.h"
 #include "relume/core/light.h"
 #include "relume/image/image.h"
+#include "relume/render/objects.h"
 #include "relume/scene/scene.h"
 
 namespace relume::render {
@@ -37,6 +38,9 @@ enum class View : std::uint8_t {
   kDirect,  ///< all lights, no indirect light
 };
 
+/// How surfaces reflect light that is known by direction (kLightmap after setDirections).
+enum class Gloss : std::uint8_t { kNone, kGgx, kPhong };
+
 struct Camera {
   Mat4 world_from_camera{1.0f};  ///< looks along -z, +y up; its scale counts for nothing
   float vertical_fov = 0.8f;     ///< radians
@@ -55,10 +59,11 @@ struct FrameSettings {
   IVec2 size{960, 540};
   Camera camera;
   View view = View::kRelit;
-  LightSet lights;              ///< world
-  Irradiance ambient{0.0f};     ///< beside the lights
-  float beta = 0.1f;            ///< of View::kLit: share of every light that arrives everywhere
-  Vec3 background{0.0f};        ///< linear
+  LightSet lights;           ///< world
+  Irradiance ambient{0.0f};  ///< beside the lights
+  float beta = 0.1f;         ///< of View::kLit: share of every light that arrives everywhere
+  Vec3 background{0.0f};     ///< linear
+  Gloss gloss = Gloss::kGgx;
   bool full_materials = false;  ///< glTF's lobes and normal maps, else Lambert's alone
   float direct_gain = 1.0f, indirect_gain = 1.0f;
   /// [LPM] 10 with W of setObscurance: indirect light is I (1 - obscurance_gain + obscurance_gain W) +
@@ -68,6 +73,9 @@ struct FrameSettings {
   /// it throws on itself, and the share of W(alpha, gamma, h) ([LPM] 9) by which it darkens indirect light.
   bool relief_steps = true, relief_shadows = true;
   float small_scale_gain = 1.0f;
+  /// In kRelit and kIndirect: indirect light on objects, and the share by which they hide that of others.
+  ObjectLight object_light = ObjectLight::kCube;
+  float object_occlusion_gain = 1.0f;
   Vec2 jitter{0.0f};             ///< pixels, from their centres
   Vec2 area_sample{0.5f, 0.5f};  ///< which point of area lights casts their shadows, [0, 1)^2
 };
@@ -90,6 +98,9 @@ class Renderer {
   void setValues(const asset::AtlasTable& atlas, const asset::Plane& plane);
   void setBent(const asset::AtlasTable& atlas, const asset::Plane& plane);
   void setObscurance(const asset::AtlasTable& atlas, const asset::Plane& plane);
+  /// In the view kLightmap light comes from this layer, of kind `directional`, from now on; highlights move
+  /// with the camera. Throws Error kCorruptAsset (asset/direction_maps.h).
+  void setDirections(const asset::Asset& asset, const asset::Layer& layer);
   /// Colours by texel of the table, in [0, 1]; `elsewhere` is that of surfaces without a bake.
   void setLabels(const asset::AtlasTable& atlas, std::span<const Vec3> colours, Vec3 elsewhere);
   /// Irradiance by texel of the table.
@@ -102,6 +113,14 @@ class Renderer {
   void setManySamples(bool many);
   /// Puts an instance of the scene elsewhere; shadows follow.
   void place(std::uint32_t instance, const Mat4& world_from_local);
+
+  /// Instances of the scene that move together from now on, lit by the world about them. Throws Error kUsage
+  /// for more than eight, or occlusion that is not of 16 cells a side.
+  std::size_t addObject(const Object& object);
+  /// Where an object stands, relative to where it was when it was added.
+  void placeObject(std::size_t object, const Mat4& world_from_start);
+  /// The layer whose probes light objects (ObjectLight::kProbes). Throws Error kMismatch for one without.
+  void setProbes(const asset::Asset& asset, const asset::Layer& layer);
 
   void draw(const FrameSettings& frame);
   /// Linear radiance of the last frame; waits for the device. 3 channels, row 0 on top.
