@@ -27,3 +27,10 @@ vec2 uvOf(MapUse map, vec4 uv01, vec4 uv23) {
   vec2 uv = map.set == 0u ? uv01.xy : map.set == 1u ? uv01.zw : map.set == 2u ? uv23.xy : uv23.zw;
   return vec2(dot(map.row.xy, uv), dot(map.row.zw, uv)) + map.offset;
 }
+
+// How the map's coordinates change with the mesh's.
+vec2 changeOf(MapUse map, vec4 by01, vec4 by23) { return uvOf(map, by01, by23) - map.offset; }
+
+// The map between its levels, by how the mesh's coordinates change from pixel to pixel (see surface.frag.glsl).
+#define LOOK_UP_MESH(pixels, map, uv01, uv23) \
+  textureGrad(pixels, uvOf(map, uv01, uv23), changeOf(map, dFdx(uv01), dFdx(uv23)), changeOf(map, dFdy(uv01), dFdy(uv23)))

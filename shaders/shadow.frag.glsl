@@ -25,7 +25,7 @@ void main() {
   Material m = materials[u_material];
   if (m.alpha_mode != kAlphaOpaque) {
     float alpha = m.base_colour.a * v_alpha;
-    if (m.base.present != 0u) alpha *= texture(u_base, uvOf(m.base, v_uv01, v_uv23)).a;
+    if (m.base.present != 0u) alpha *= LOOK_UP_MESH(u_base, m.base, v_uv01, v_uv23).a;
     if (m.alpha_mode == kAlphaMask ? alpha < m.alpha_cutoff : alpha <= thresholdAt(v_position)) discard;
   }
   float d = u_light.w > 0.0 ? length(v_position - u_light.xyz) : dot(v_position, u_light.xyz) - u_plane_start;

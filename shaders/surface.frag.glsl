@@ -76,12 +76,13 @@ void startCoordinates() {
   g_x01 = dFdx(v_uv01), g_x23 = dFdx(v_uv23);
   g_y01 = dFdy(v_uv01), g_y23 = dFdy(v_uv23);
 }
-vec2 changeOf(MapUse map, vec4 by01, vec4 by23) { return uvOf(map, by01, by23) - map.offset; }
 
-#if RELIEF
+// Of invocations that only help others with their derivatives nothing may be asked but what is interpolated: a
+// driver may give them zeros for what they read from buffers.
 #define LOOK_UP(map, use) \
   textureGrad(map, uvOf(use, g_uv01, g_uv23), changeOf(use, g_x01, g_x23), changeOf(use, g_y01, g_y23))
 
+#if RELIEF
 struct Relief {
   vec3 along_u, along_v;  // metres per unit of the height map's coordinates
   vec3 place;             // of the map, and height
@@ -125,14 +126,11 @@ Relief reliefOf(Material m, vec3 n, vec3 to_viewer) {
   r.open = smallScaleOcclusion(up, there.y, there.x);
   return r;
 }
-#else
-#define LOOK_UP(map, use) texture(map, uvOf(use, g_uv01, g_uv23))
 #endif
 
 // The normal of the surface's detail, on the side of n; n where there is none.
 vec3 detailNormal(Material m, vec3 n) {
   if (m.normal.present == 0u) return n;
-  vec2 uv = uvOf(m.normal, v_uv01, v_uv23);
   vec3 t;
   float hand;
   if (u_has_tangents != 0u) {
@@ -141,7 +139,7 @@ vec3 detailNormal(Material m, vec3 n) {
   } else {
     // v runs downwards in glTF, so the bitangent is minus dp/dv.
     vec3 px = dFdx(v_position), py = dFdy(v_position);
-    vec2 sx = dFdx(uv), sy = dFdy(uv);
+    vec2 sx = changeOf(m.normal, g_x01, g_x23), sy = changeOf(m.normal, g_y01, g_y23);
     float area = sx.x * sy.y - sx.y * sy.x;
     if (abs(area) == 0.0) return n;
     t = (px * sy.y - py * sx.y) / area;
