@@ -61,14 +61,26 @@ std::vector<Vec3> readAt(const scene::Scene& scene, const asset::Asset& asset, c
 void compare(std::span<const Vec3> relit, std::span<const Irradiance> first,
              std::span<const Irradiance> second, LampAgreement& lamp) {
   // As in verification.cpp: two truths, whose noise has no part in the mean of the product.
-  double error2 = 0, truth2 = 0, sum = 0, truth = 0;
+  double truth2 = 0, sum = 0, truth = 0;
+  std::vector<double> error2;
   for (std::size_t i = 0; i < relit.size(); ++i) {
     const glm::dvec3 a(first[i].rgb), b(second[i].rgb), r(relit[i]);
-    error2 += glm::dot(r - a, r - b), truth2 += glm::dot(a, b);
+    error2.push_back(glm::dot(r - a, r - b)), truth2 += glm::dot(a, b);
     sum += r.x + r.y + r.z, truth += 0.5 * (a.x + a.y + a.z + b.x + b.y + b.z);
   }
-  lamp.error = truth2 > 0 ? std::sqrt(std::max(error2, 0.0) / truth2) : 0;
+  std::sort(error2.begin(), error2.end());
+  const auto without = [&](std::size_t places) {
+    const double left =
+        std::accumulate(error2.begin(), error2.end() - static_cast<std::ptrdiff_t>(places), 0.0);
+    return truth2 > 0 ? std::sqrt(std::max(left, 0.0) / truth2) : 0;
+  };
+  lamp.error = without(0), lamp.rest = without(error2.size() / 100);
   lamp.bias = truth > 0 ? sum / truth - 1 : 0;
+}
+
+double medianOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
 }  // namespace
@@ -126,13 +138,11 @@ RelitVerification verifyRelit(scene::Scene scene, asset::Asset asset, const Veri
     compare(readAt(scene, asset, result.layer, places), first.value, second.value, lamp);
     stage.advance(1);
   }
-  std::vector<double> errors;
-  for (const LampAgreement& lamp : result.lamps) errors.push_back(lamp.error);
-  std::sort(errors.begin(), errors.end());
-  const std::size_t n = errors.size();
-  result.median = 0.5 * (errors[(n - 1) / 2] + errors[n / 2]);
-  result.mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(n);
-  result.worst = errors.back();
+  std::vector<double> errors, rests;
+  for (const LampAgreement& lamp : result.lamps) errors.push_back(lamp.error), rests.push_back(lamp.rest);
+  result.median = medianOf(errors), result.median_rest = medianOf(rests);
+  result.mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
+  result.worst = *std::max_element(errors.begin(), errors.end());
   return result;
 }
 

@@ -12,6 +12,7 @@ struct LampAgreement {
   Light lamp;
   double clearance = 0;  ///< metres to the nearest surface
   double error = 0;      ///< ||relit - true|| / ||true||, the truth's noise taken off
+  double rest = 0;       ///< the same without the places that are most wrong, a hundredth of all
   double bias = 0;       ///< sum of relit / sum of true - 1
 };
 
@@ -23,6 +24,7 @@ struct RelitVerification {
   std::uint64_t paths = 0;
   // Over lamps.
   double median = 0, mean = 0, worst = 0;
+  double median_rest = 0;     ///< of LampAgreement::rest
   double error_estimate = 0;  ///< what encoding added, as the bake measured it
 };
 

@@ -122,6 +122,7 @@ class LightPath(test_cli.CliTest):
         v = json.loads(numbers.read_text())
         self.assertEqual(len(v["lamps"]), 5)
         self.assertLess(v["median_error"], 0.1)
+        self.assertLess(v["median_error_of_99_percent"], v["median_error"])
         self.assertTrue(all(lamp["clearance"] >= v["spacing"] for lamp in v["lamps"]))
         self.assertIn("Lamps", (report / "report.html").read_text())
         views = json.loads((report / "report.json").read_text())["comparisons"][0]["views"]
@@ -154,7 +155,9 @@ class LightPath(test_cli.CliTest):
 
         usual = causes()
         self.assertLess(max(usual["entries"], usual["transfer_noise"], usual["encoding"]), 0.1)
-        self.assertLess(causes(count=1024)["entries"], 0.8 * usual["entries"])
+        # Not with count=: lamps come nearer as entries get smaller.
+        self.assertGreater(causes(samples=1)["entries"], 2 * usual["entries"])
+        self.assertGreater(causes(modes=1)["entries"], 1.3 * usual["entries"])
         self.assertGreater(causes(error=0.3)["encoding"], 3 * usual["encoding"])
         rays = causes(rays=4096)
         self.assertLess(rays["transfer_noise"], 0.5 * usual["transfer_noise"])

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -27,24 +28,75 @@ enum ShapeField : std::size_t { kExits, kEntries, kChannels, kBits, kSamples, kS
   throw Error(ErrorCode::kCorruptAsset, "layer " + layer, problem, "the file was damaged; bake it again");
 }
 
+constexpr float kMixSteps = 127;
+
+/// Calls visit(place in mix, entry).
+template <class Visit>
+void forEachMix(const Entries& entries, const Visit& visit) {
+  for (std::size_t p = 0, at = 0; p < entries.patches(); ++p)
+    for (std::uint32_t k = 0; k < entries.samples; ++k)
+      for (std::uint32_t e = entries.first[p]; e < entries.first[p + 1]; ++e) visit(at++, e);
+}
+
 bool soundAmount(float v) { return std::isfinite(v) && v >= 0; }
+
+void checkPatches(const Entries& entries, const std::string& layer) {
+  const std::vector<std::uint32_t>& first = entries.first;
+  // Strictly: a patch without an entry has no light.
+  if (first.size() < 2 || first.front() != 0 || first.back() != entries.size() ||
+      std::adjacent_find(first.begin(), first.end(), std::greater_equal<>()) != first.end())
+    corrupt(layer,
+            fmt::format("its {} patches do not share out {} entries", entries.patches(), entries.size()));
+  if (entries.mix.size() != std::uint64_t{entries.samples} * entries.size())
+    corrupt(layer, fmt::format("it mixes {} irradiances for {} entries of {} points", entries.mix.size(),
+                               entries.size(), entries.samples));
+  if (!std::all_of(entries.mix.begin(), entries.mix.end(), [](float m) { return std::isfinite(m); }))
+    corrupt(layer, "how an entry mixes irradiances is not finite");
+}
 
 void checkEntries(const Entries& entries, std::size_t columns, const std::string& layer) {
   if (entries.size() != columns)
     corrupt(layer, fmt::format("it has {} entries for {} columns", entries.size(), columns));
-  const std::uint64_t points = std::uint64_t{entries.samples} * columns;
+  checkPatches(entries, layer);
+  const std::uint64_t points = std::uint64_t{entries.samples} * entries.patches();
   if (entries.samples == 0 || entries.position.size() != points || entries.normal.size() != points)
-    corrupt(layer, fmt::format("its entries have {} positions and {} normals where {} entries have {} each",
-                               entries.position.size(), entries.normal.size(), columns, entries.samples));
+    corrupt(layer,
+            fmt::format("it has {} positions and {} normals where {} patches have {} points each",
+                        entries.position.size(), entries.normal.size(), entries.patches(), entries.samples));
   for (std::size_t i = 0; i < points; ++i)
     if (!isFinite(entries.position[i]) || !(std::abs(glm::length(entries.normal[i]) - 1) < kUnitTolerance))
       corrupt(layer, fmt::format("entry point {} is not a place with a unit normal", i));
   if (!std::all_of(entries.area.begin(), entries.area.end(), soundAmount))
     corrupt(layer, "the area of an entry is negative or not finite");
-  if (!entries.weight.empty() && entries.weight.size() != columns)
-    corrupt(layer, fmt::format("it has {} entry weights for {} entries", entries.weight.size(), columns));
-  if (!std::all_of(entries.weight.begin(), entries.weight.end(), soundAmount))
-    corrupt(layer, "the weight of an entry is negative or not finite");
+}
+
+/// By entry: the largest of its mix, 127 steps.
+std::vector<float> mixScales(const Entries& entries) {
+  std::vector<float> scale(entries.size(), 0.0f);
+  forEachMix(entries, [&](std::size_t at, std::size_t entry) {
+    scale[entry] = std::max(scale[entry], std::abs(entries.mix[at]));
+  });
+  for (float& s : scale) s /= kMixSteps;
+  return scale;
+}
+
+/// Every entry the mean of its own points: what needs no tables.
+bool allMeans(const Entries& entries) {
+  return entries.patches() == entries.size() &&
+         std::all_of(entries.mix.begin(), entries.mix.end(),
+                     [&](float m) { return m == 1.0f / static_cast<float>(entries.samples); });
+}
+
+void addMix(const Entries& entries, std::vector<Table>& tables) {
+  if (allMeans(entries)) return;
+  std::vector<float> scale = mixScales(entries);
+  std::vector<std::int8_t> mix(entries.mix.size());
+  forEachMix(entries, [&](std::size_t at, std::size_t entry) {
+    if (scale[entry] > 0) mix[at] = static_cast<std::int8_t>(std::lround(entries.mix[at] / scale[entry]));
+  });
+  tables.push_back({"patchFirst", 1, entries.first});
+  tables.push_back({"entryMix", 1, std::move(mix)});
+  tables.push_back({"entryMixScale", 1, std::move(scale)});
 }
 
 void checkVertices(const VertexExits& v, std::size_t rows, std::size_t texels, const std::string& layer) {
@@ -192,6 +244,22 @@ std::vector<Point> readPositions(const TableReader& tables, const std::string& l
   return positions;
 }
 
+void readMix(const TableReader& tables, const std::string& layer, Entries& entries) {
+  if (!tables.has("entryMix")) {
+    if (entries.position.size() != std::uint64_t{entries.samples} * entries.size())
+      corrupt(layer, fmt::format("it has {} positions for {} entries of {} points", entries.position.size(),
+                                 entries.size(), entries.samples));
+    return entries.setMeans(entries.size());
+  }
+  entries.first = tables.get<std::uint32_t>("patchFirst");
+  const auto& q = tables.get<std::int8_t>("entryMix");
+  const auto& scale = tables.get<float>("entryMixScale");
+  if (scale.size() != entries.size()) corrupt(layer, "its tables entryMixScale and entryArea do not fit");
+  entries.mix.assign(q.begin(), q.end());
+  checkPatches(entries, layer);
+  forEachMix(entries, [&](std::size_t at, std::size_t entry) { entries.mix[at] *= scale[entry]; });
+}
+
 std::vector<Normal> readNormals(const TableReader& tables, const char* table, const std::string& layer) {
   const auto& q = tables.get<std::uint16_t>(table, 2);
   if (std::any_of(q.begin(), q.end(), [](std::uint16_t v) { return v > kOctahedralLast; }))
@@ -227,6 +295,12 @@ Exits readExits(const TableReader& tables, const std::string& layer, std::uint32
 }
 
 }  // namespace
+
+void Entries::setMeans(std::size_t count) {
+  first.resize(count + 1);
+  std::iota(first.begin(), first.end(), 0u);
+  mix.assign(count * samples, 1.0f / static_cast<float>(samples));
+}
 
 void Transfer::check(const AtlasTable& atlas, const std::string& layer) const {
   try {
@@ -269,7 +343,7 @@ std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& at
   addExits(transfer.exits, tables);
   if (const auto& e = transfer.errors)
     tables.push_back({"errors", 3, std::vector<float>{e->entries, e->transfer, e->encoding}});
-  if (!entries.weight.empty()) tables.push_back({"entryWeight", 1, entries.weight});
+  addMix(entries, tables);
   if (!transfer.near_share.empty()) tables.push_back({"nearShare", 3, encodeNear(transfer.near_share)});
   if (m.bits == 8) {
     tables.push_back({"planes", 1, m.planes8});
@@ -308,7 +382,7 @@ Transfer readTransfer(const Layer& layer, const AtlasTable& atlas) {
   t.entries.position = readPositions(tables, layer.name);
   t.entries.normal = readNormals(tables, "entryNormal", layer.name);
   t.entries.area = tables.get<float>("entryArea");
-  if (tables.has("entryWeight")) t.entries.weight = tables.get<float>("entryWeight");
+  readMix(tables, layer.name, t.entries);
   t.exits = readExits(tables, layer.name, shape[kSide]);
   if (tables.has("nearShare")) {
     const auto& q = tables.get<std::uint8_t>("nearShare", 3);

@@ -62,7 +62,15 @@ inline Transfer madeTransfer(const AtlasTable& atlas, std::uint32_t bits = 8, st
     t.entries.normal.push_back(glm::normalize(Vec3(unit(random) - 0.5f, unit(random), unit(random) - 0.5f)));
   }
   for (int i = 0; i < 5; ++i) t.entries.area.push_back(0.5f + unit(random));
+  t.entries.setMeans(5);
   return t;
+}
+
+/// The same, of 3 patches with 2, 1 and 2 entries.
+inline void mixEntries(Entries& entries) {
+  entries.first = {0, 2, 3, 5};
+  entries.position.resize(6), entries.normal.resize(6);
+  entries.mix = {0.5f, -2, 0.5f, 2, 0.25f, 0.75f, 3, 0.01f, 0.25f, -0.02f};
 }
 
 }  // namespace relume::asset

@@ -38,7 +38,7 @@ TEST(Transfer, RoundTripThroughAFile) {
   const AtlasTable atlas = madeAtlas();
   for (const std::uint32_t bits : {8u, 16u}) {
     Transfer t = madeTransfer(atlas, bits);
-    if (bits == 16) t.entries.weight = {1, 0.25f, 3, 0, 7};
+    if (bits == 16) mixEntries(t.entries);
     const Asset got = decode(encodeGlb(assetOf(t, atlas)), "test.glb");
     const Transfer back = readTransfer(got.layer("lightpath"), got.atlas);
     EXPECT_TRUE(sameMatrix(back.matrix, t.matrix));
@@ -46,7 +46,10 @@ TEST(Transfer, RoundTripThroughAFile) {
     EXPECT_EQ(back.exits.exit_of_texel, t.exits.exit_of_texel);
     EXPECT_EQ(back.entries.samples, t.entries.samples);
     EXPECT_EQ(back.entries.area, t.entries.area);
-    EXPECT_EQ(back.entries.weight, t.entries.weight);
+    EXPECT_EQ(back.entries.first, t.entries.first);
+    ASSERT_EQ(back.entries.mix.size(), t.entries.mix.size());
+    for (std::size_t i = 0; i < t.entries.mix.size(); ++i)  // 8 bits of the largest of an entry
+      EXPECT_NEAR(back.entries.mix[i], t.entries.mix[i], bits == 8 ? 0 : 3.0f / 254);
     ASSERT_EQ(back.entries.position.size(), t.entries.position.size());
     for (std::size_t i = 0; i < t.entries.position.size(); ++i) {
       // 2^-12 of the mean entry's side, of about 1 m
@@ -57,6 +60,7 @@ TEST(Transfer, RoundTripThroughAFile) {
     const Transfer again = readTransfer(layerOf(back, atlas), atlas);
     EXPECT_EQ(again.entries.position, back.entries.position);
     EXPECT_EQ(again.entries.normal, back.entries.normal);
+    EXPECT_EQ(again.entries.mix, back.entries.mix);
   }
 }
 
@@ -71,11 +75,11 @@ TEST(Transfer, LayersWithoutOneAreAMismatch) {
 }
 
 // Every table missing, of another type, of other channels, cut at every length, one longer: an Error that
-// names the layer. (Weights of entries may be missing; then they are 1.)
+// names the layer.
 TEST(Transfer, EveryTableMissingOrOfTheWrongShapeIsRefused) {
   const AtlasTable atlas = madeAtlas();
   Transfer t = madeTransfer(atlas);
-  t.entries.weight = {1, 0.25f, 3, 0, 7};
+  mixEntries(t.entries);
   const Layer sound = layerOf(t, atlas);
   const auto refused = [&](const Layer& layer) {
     try {
@@ -91,7 +95,7 @@ TEST(Transfer, EveryTableMissingOrOfTheWrongShapeIsRefused) {
     SCOPED_TRACE(sound.tables[k].name);
     Layer layer = sound;
     layer.tables.erase(layer.tables.begin() + static_cast<std::ptrdiff_t>(k));
-    EXPECT_EQ(refused(layer), sound.tables[k].name != "entryWeight");
+    EXPECT_TRUE(refused(layer));
     layer = sound;
     layer.tables[k].channels += 1;
     EXPECT_TRUE(refused(layer));
@@ -106,8 +110,7 @@ TEST(Transfer, EveryTableMissingOrOfTheWrongShapeIsRefused) {
             auto other = values;
             other.resize(size);
             cut.tables[k].values = other;
-            // No weights at all are weights of 1.
-            EXPECT_EQ(refused(cut), !(size == 0 && sound.tables[k].name == "entryWeight")) << size;
+            EXPECT_TRUE(refused(cut)) << size;
           }
         },
         sound.tables[k].values);
@@ -118,7 +121,7 @@ TEST(Transfer, NumbersThatMakeNoSenseAreRefused) {
   const AtlasTable atlas = madeAtlas();
   const auto refused = [&](const std::function<void(Transfer&)>& change) {
     Transfer t = madeTransfer(atlas);
-    t.entries.weight.assign(5, 1.0f);
+    mixEntries(t.entries);
     change(t);
     try {
       t.check(atlas, "lightpath");
@@ -140,8 +143,12 @@ TEST(Transfer, NumbersThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused([&](Transfer& t) { t.entries.normal[1].x = nan; }));
   EXPECT_TRUE(refused([](Transfer& t) { t.entries.area[1] = -1; }));
   EXPECT_TRUE(refused([&](Transfer& t) { t.entries.area[1] = nan; }));
-  EXPECT_TRUE(refused([](Transfer& t) { t.entries.weight[1] = -1; }));
-  EXPECT_TRUE(refused([](Transfer& t) { t.entries.weight[1] = kInfinity; }));
+  EXPECT_TRUE(refused([](Transfer& t) { t.entries.mix[1] = kInfinity; }));
+  EXPECT_TRUE(refused([](Transfer& t) { t.entries.mix.pop_back(); }));
+  EXPECT_TRUE(refused([](Transfer& t) { t.entries.first[1] = 3; }));  // a patch of none
+  EXPECT_TRUE(refused([](Transfer& t) { t.entries.first[3] = 6; }));
+  EXPECT_TRUE(refused([](Transfer& t) { t.entries.first[0] = 1; }));
+  EXPECT_TRUE(refused([](Transfer& t) { t.entries.first.clear(); }));
   EXPECT_TRUE(refused([](Transfer& t) { t.matrix.tile_row[2] = 18; }));
   EXPECT_TRUE(refused([](Transfer& t) { t.matrix.cluster_column[2] = 5; }));
   EXPECT_TRUE(refused([&](Transfer& t) { t.matrix.scale[2] = nan; }));

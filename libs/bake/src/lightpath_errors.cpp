@@ -28,10 +28,18 @@ float difference(std::span<const Irradiance> a, std::span<const Irradiance> b) {
   return all > 0 ? static_cast<float>(std::sqrt(error / all)) : 0.0f;
 }
 
+/// Of equal shares of what can be seen of all, as `relume verify` takes places.
 std::vector<std::uint32_t> someExits(const LightPaths& paths) {
+  const std::vector<transport::Exit>& exits = paths.exits().all;
+  double all = 0, passed = 0;
+  for (const transport::Exit& e : exits) all += static_cast<double>(e.area);
   std::vector<std::uint32_t> which;
-  const std::size_t count = paths.exits().size(), step = std::max<std::size_t>(count / kExits, 1);
-  for (std::size_t x = step / 2; x < count; x += step) which.push_back(static_cast<std::uint32_t>(x));
+  for (std::uint32_t x = 0; x < exits.size() && all > 0; ++x) {
+    passed += static_cast<double>(exits[x].area);
+    // One for each share whose middle lies in this exit; a large exit counts as often.
+    while (which.size() < kExits && passed * kExits >= (static_cast<double>(which.size()) + 0.5) * all)
+      which.push_back(x);
+  }
   return which;
 }
 

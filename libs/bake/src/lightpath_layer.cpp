@@ -82,10 +82,11 @@ LightPathOptions optionsOf(const LayerContext& context, const Parameters& parame
   o.entries = count(parameters, "count", preset.entries);
   if (word(parameters, "entries") == "shot") {
     o.placement = transport::EntryPlacement::kShot;
-    if (parameters.contains("samples"))
+    if (parameters.contains("samples") || parameters.contains("modes"))
       throw Error(ErrorCode::kUsage, "--layer lightpath", "entries that are shot are points, with one sample",
-                  "leave samples= away, or take entries=patches");
+                  "leave samples= and modes= away, or take entries=patches");
   }
+  o.patch_entries = count(parameters, "modes", o.patch_entries);
   o.entry_samples = count(parameters, "samples", o.entry_samples);
   o.transfer = word(parameters, "transfer") == "walks" ? transport::TransferBy::kWalks
                                                        : transport::TransferBy::kGathering;
@@ -133,11 +134,12 @@ Digest keyOf(const LightPathOptions& o, const Coding& c) {
   Hasher hasher;
   for (const Box3& box : o.light_boxes) hasher.add(box.lo).add(box.hi);
   return hasher
-      .add(std::string_view("lightpath 4"))  // raise when results change
+      .add(std::string_view("lightpath 5"))  // raise when results change
       .add(o.entries)
       .add(o.placement)
       .add(o.test_points)
       .add(o.aim.value_or(Direction(0)))
+      .add(o.patch_entries)
       .add(o.entry_samples)
       .add(o.transfer)
       .add(o.walks)
@@ -208,7 +210,12 @@ codec::Transfer matrixOf(const LightPaths& paths) {
 }
 
 asset::Entries storedEntries(const transport::Entries& entries) {
-  asset::Entries stored{.samples = entries.samples_each, .position = {}, .normal = {}, .area = entries.area};
+  asset::Entries stored{.samples = entries.samples_each,
+                        .position = {},
+                        .normal = {},
+                        .first = entries.first,
+                        .mix = entries.mix,
+                        .area = entries.area};
   for (const transport::EntrySample& s : entries.samples) {
     stored.position.push_back(s.position);
     stored.normal.push_back(s.normal);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// I_e ([SzirmayKalos] section 10), as the mean over fixed points of the entry's patch where the paper has one
-// point. Sums over lights are formed anew, in their order, so nothing depends on lights of calls before.
+// I_e ([SzirmayKalos] section 10), from fixed points of the entry's patch where the paper has one point. Sums
+// over lights are formed anew, in their order, so nothing depends on lights of calls before.
 #include "entry_lights.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace relume::relight {
 namespace {
 
-constexpr std::size_t kEntriesAtOnce = 64;
+constexpr std::size_t kEntriesAtOnce = 64, kPatchesAtOnce = 16, kPointsAtOnce = 1024;
 
 bool sameButStrength(const Light& a, const Light& b) {
   return a.kind == b.kind && a.range == b.range && a.inner_cone == b.inner_cone &&
@@ -57,8 +57,9 @@ void checkLights(const LightSet& lights) {
 
 EntryLights::EntryLights(const asset::Entries& entries, std::span<const Point> points,
                          std::span<const Normal> normals)
-    : parts_{Part{0, entries.size(), 0, entries.samples},
-             Part{entries.size(), points.size(), entries.position.size(), 1}},
+    : samples_(entries.samples),
+      first_(entries.first),
+      mix_(entries.mix),
       visibility_(entries.position.size() + points.size()),
       result_(entries.size() + points.size()) {
   for (std::size_t c = 0; c < 3; ++c) {
@@ -89,40 +90,56 @@ void EntryLights::renew(Kept& kept, const Light& light, std::size_t index,
   kept.light = light;
   kept.factor.resize(result_.size());
   struct Job {
-    EntryLights& self;
-    Kept& kept;
-    const PreparedLight prepared;
-    const float* visibility;
-    Part part{};
-  } job{*this, kept, PreparedLight(light), visibility ? visibility_.data() : nullptr};
-  const auto means = [&job](std::size_t begin, std::size_t end) {
-    const std::size_t samples = job.part.samples, last = job.part.first_point + end * samples;
-    float received[kBlock];
-    float sum = 0;
-    std::size_t entry = job.part.first_group + begin, taken = 0;
-    for (std::size_t first = job.part.first_point + begin * samples; first < last; first += kBlock) {
-      TexelBlock block;
-      for (std::size_t c = 0; c < 3; ++c) {
-        block.position[c] = job.self.position_[c].data() + first;
-        block.normal[c] = job.self.normal_[c].data() + first;
-      }
-      block.visibility = job.visibility ? job.visibility + first : nullptr;
-      block.count = std::min(kBlock, last - first);
-      receivedFactors(job.prepared, block, received);
-      for (std::size_t i = 0; i < block.count; ++i) {
-        sum += received[i];
-        if (++taken < samples) continue;
-        job.kept.factor[entry++] = sum / static_cast<float>(samples);
-        sum = 0, taken = 0;
-      }
-    }
-  };
-  for (const Part& part : parts_) {
-    job.part = part;
-    parallelFor(part.groups, kEntriesAtOnce, means);
-  }
+    const EntryLights& self;
+    const Received light;
+    float* factor;
+  } job{*this, {PreparedLight(light), visibility ? visibility_.data() : nullptr}, kept.factor.data()};
+  parallelFor(first_.size() - 1, kPatchesAtOnce, [&job](std::size_t begin, std::size_t end) {
+    job.self.mixPatches(job.light, job.factor, begin, end);
+  });
+  parallelFor(result_.size() - first_.back(), kPointsAtOnce, [&job](std::size_t begin, std::size_t end) {
+    job.self.copyPoints(job.light, job.factor, begin, end);
+  });
   kept.with_visibility = static_cast<bool>(visibility);
   kept.valid = true;
+}
+
+/// Of points [first, last), or as many as go at once; how many.
+std::size_t EntryLights::receive(const Received& light, std::size_t first, std::size_t last,
+                                 float* received) const {
+  TexelBlock block;
+  for (std::size_t c = 0; c < 3; ++c)
+    block.position[c] = position_[c].data() + first, block.normal[c] = normal_[c].data() + first;
+  block.visibility = light.visibility ? light.visibility + first : nullptr;
+  block.count = std::min(kBlock, last - first);
+  receivedFactors(light.prepared, block, received);
+  return block.count;
+}
+
+/// Entries of patches [begin, end).
+void EntryLights::mixPatches(const Received& light, float* factor, std::size_t begin, std::size_t end) const {
+  std::fill(factor + first_[begin], factor + first_[end], 0.0f);
+  float received[kBlock];
+  std::size_t patch = begin, sample = 0;
+  const float* mix = mix_.data() + std::size_t{samples_} * first_[begin];
+  for (std::size_t at = begin * samples_; at < end * samples_;) {
+    const std::size_t count = receive(light, at, end * samples_, received);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t modes = first_[patch + 1] - first_[patch];
+      float* of_patch = factor + first_[patch];
+      for (std::size_t m = 0; m < modes; ++m) of_patch[m] += mix[m] * received[i];
+      mix += modes;
+      if (++sample == samples_) sample = 0, ++patch;
+    }
+    at += count;
+  }
+}
+
+/// Single points [begin, end), which come after the entries' points.
+void EntryLights::copyPoints(const Received& light, float* factor, std::size_t begin, std::size_t end) const {
+  const std::size_t points = (first_.size() - 1) * samples_;
+  for (std::size_t at = begin; at < end;)
+    at += receive(light, points + at, points + end, factor + first_.back() + at);
 }
 
 void EntryLights::addUp(const LightSet& lights) {
@@ -142,7 +159,7 @@ void EntryLights::addUp(const LightSet& lights) {
   });
   for (std::size_t e = 0; e < sum_.size(); ++e)
     for (int c = 0; c < 3; ++c)
-      if (!(sum_[e].rgb[c] <= BlockProduct::kLargest))
+      if (!(std::abs(sum_[e].rgb[c]) <= BlockProduct::kLargest))
         throw Error(ErrorCode::kInvalidValue, fmt::format("the irradiance of entry {}", e),
                     fmt::format("is {} W/m^2", sum_[e].rgb[c]), "take lights that are less bright");
   result_.swap(sum_);

@@ -26,22 +26,27 @@ class EntryLights {
   void forget();
 
  private:
-  /// What a light of unit strength gives each entry: the mean over its points of visibility * E * cos.
+  /// What a light of unit strength gives each entry: by its points' visibility * E * cos.
   struct Kept {
     Light light;
     bool valid = false, with_visibility = false;
     std::vector<float> factor;
   };
 
-  /// Groups of points whose mean is wanted.
-  struct Part {
-    std::size_t first_group, groups, first_point, samples;
+  /// What a light gives points, by mixes of which entries are made, or each of which is wanted.
+  struct Received {
+    const PreparedLight prepared;
+    const float* visibility;  ///< null: all 1
   };
-
   void renew(Kept& kept, const Light& light, std::size_t index, const VisibilitySource& visibility);
+  void mixPatches(const Received& light, float* factor, std::size_t begin, std::size_t end) const;
+  void copyPoints(const Received& light, float* factor, std::size_t begin, std::size_t end) const;
+  std::size_t receive(const Received& light, std::size_t first, std::size_t last, float* received) const;
   void addUp(const LightSet& lights);
 
-  std::array<Part, 2> parts_;                            ///< entries, single points
+  std::uint32_t samples_;                                ///< points of a patch
+  std::vector<std::uint32_t> first_;                     ///< asset::Entries::first
+  std::vector<float> mix_;                               ///< asset::Entries::mix
   std::array<std::vector<float>, 3> position_, normal_;  ///< by point
   std::vector<float> visibility_;                        ///< by point
   std::vector<Kept> kept_;

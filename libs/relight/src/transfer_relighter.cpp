@@ -52,7 +52,6 @@ struct TransferRelighter::Impl {
         field(std::move(transfer.exits.probes)),
         entries(std::move(transfer.entries)),
         shown(entries.size()),
-        weighted(entries.size()),
         exits(product.rows()),
         texels(atlas.texel.size()),
         near_share(std::move(transfer.near_share)),
@@ -100,7 +99,6 @@ struct TransferRelighter::Impl {
   ProbeField field;
   asset::Entries entries;
   std::vector<Irradiance> shown;  ///< what exits were computed for, zero at first
-  std::vector<Irradiance> weighted;
   std::vector<Irradiance> exits, texels;
   asset::NearShares near_share;       ///< empty: no short ways are left out
   std::vector<Irradiance> direct;     ///< by texel, where they are
@@ -129,7 +127,8 @@ Irradiance TransferRelighter::atProbes(Point p, Normal n) const {
 }
 std::span<const Point> TransferRelighter::entryPoints() const { return impl_->entries.position; }
 std::span<const Normal> TransferRelighter::entryNormals() const { return impl_->entries.normal; }
-std::size_t TransferRelighter::pointsPerEntry() const { return impl_->entries.samples; }
+std::size_t TransferRelighter::pointsPerPatch() const { return impl_->entries.samples; }
+const asset::Entries& TransferRelighter::entries() const { return impl_->entries; }
 std::span<const Point> TransferRelighter::visibilityPoints() const { return impl_->points; }
 std::span<const Normal> TransferRelighter::visibilityNormals() const { return impl_->normals; }
 bool TransferRelighter::leavesShortWays() const { return !impl_->near_share.empty(); }
@@ -154,15 +153,12 @@ std::span<const Irradiance> TransferRelighter::relight(std::span<const Irradianc
   Impl& i = *impl_;
   RELUME_CHECK_EQ(entry_irradiance.size(), i.entries.size());
   if (sameBits(entry_irradiance, i.shown)) return i.exits;
-  const std::vector<float>& weight = i.entries.weight;
-  for (std::size_t e = 0; e < entry_irradiance.size(); ++e) {
-    i.weighted[e] = weight.empty() ? entry_irradiance[e] : weight[e] * entry_irradiance[e];
+  for (std::size_t e = 0; e < entry_irradiance.size(); ++e)
     for (int c = 0; c < 3; ++c)
-      if (!(std::abs(i.weighted[e].rgb[c]) <= BlockProduct::kLargest))
+      if (!(std::abs(entry_irradiance[e].rgb[c]) <= BlockProduct::kLargest))
         throw Error(ErrorCode::kInvalidValue, fmt::format("the irradiance of entry {}", e),
                     fmt::format("is {} W/m^2", entry_irradiance[e].rgb[c]));
-  }
-  i.product.multiply(i.weighted, i.exits);
+  i.product.multiply(entry_irradiance, i.exits);
   std::copy(entry_irradiance.begin(), entry_irradiance.end(), i.shown.begin());
   i.texels_current = false;
   return i.exits;

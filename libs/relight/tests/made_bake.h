@@ -64,9 +64,21 @@ inline codec::BlockMatrix madeMatrix(const MadeMatrix& want, std::uint32_t seed 
   return m;
 }
 
+/// Patches of so many entries each.
+inline void mixEntries(asset::Entries& entries, std::uint32_t each, std::mt19937& random) {
+  std::uniform_real_distribution<float> mix(-0.5f, 0.5f);
+  entries.first.clear();
+  for (std::uint32_t e = 0; e <= entries.size(); e += each) entries.first.push_back(e);
+  for (float& m : entries.mix) m = mix(random);
+  for (std::size_t i = 0; i < entries.mix.size(); i += each)  // the mean
+    entries.mix[i] = 1.0f / static_cast<float>(entries.samples);
+}
+
 /// Atlas and transfer whose exits are blocks of side x side texels, row after row over one page of two charts
-/// (left and right half) with some holes; entries random in a room of 4 x 3 x 5 m.
-inline asset::Asset madeBake(MadeMatrix want, std::uint32_t side = 4, std::uint32_t samples = 3) {
+/// (left and right half) with some holes; entries random in a room of 4 x 3 x 5 m, `patch_entries` to
+/// a patch: a mean and modes.
+inline asset::Asset madeBake(MadeMatrix want, std::uint32_t side = 4, std::uint32_t samples = 3,
+                             std::uint32_t patch_entries = 1) {
   asset::Asset bake;
   asset::AtlasTable& atlas = bake.atlas;
   const std::uint32_t blocks_x = 10, blocks_y = (want.rows + blocks_x - 1) / blocks_x;
@@ -88,12 +100,14 @@ inline asset::Asset madeBake(MadeMatrix want, std::uint32_t side = 4, std::uint3
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit;
   t.entries.samples = samples;
-  for (std::uint32_t i = 0; i < want.columns * samples; ++i) {
+  for (std::uint32_t i = 0; i < want.columns / patch_entries * samples; ++i) {
     t.entries.position.push_back(Vec3(4, 3, 5) * Vec3(unit(random), unit(random), unit(random)));
     t.entries.normal.push_back(
         glm::normalize(Vec3(unit(random) - 0.5f, 0.1f + unit(random), unit(random) - 0.5f)));
   }
   for (std::uint32_t e = 0; e < want.columns; ++e) t.entries.area.push_back(0.5f + unit(random));
+  t.entries.setMeans(want.columns);
+  if (patch_entries > 1) mixEntries(t.entries, patch_entries, random);
   asset::Layer layer;
   layer.name = layer.kind = "lightpath";
   layer.tables = asset::transferTables(t, atlas);

@@ -76,11 +76,14 @@ TEST(TransferRelighter, MakesUpForShortWays) {
   EXPECT_THROW(asset::transferTables(transfer, bake.atlas), Error);
 }
 
-TEST(TransferRelighter, EntryIrradianceIsTheMeanOfDirectLightOverItsPoints) {
-  const asset::Asset bake = madeBake({.columns = 90}, 4, 5);
+void expectMixedEntries(std::uint32_t patch_entries) {
+  SCOPED_TRACE(patch_entries);
+  const asset::Asset bake = madeBake({.columns = 90}, 4, 5, patch_entries);
   TransferRelighter relighter(bake, bake.layers[0]);
   ASSERT_EQ(relighter.entryCount(), 90u);
-  ASSERT_EQ(relighter.pointsPerEntry(), 5u);
+  ASSERT_EQ(relighter.pointsPerPatch(), 5u);
+  const asset::Entries& entries = relighter.entries();
+  ASSERT_EQ(entries.patches(), 90u / patch_entries);
   const LightSet lights = someLights(12);
   const VisibilitySource visibility = [](std::size_t light, std::span<float> v) {
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = share(light, i);
@@ -88,28 +91,35 @@ TEST(TransferRelighter, EntryIrradianceIsTheMeanOfDirectLightOverItsPoints) {
   for (const bool seen : {true, false}) {
     const auto got = relighter.entryIrradiance(lights, seen ? VisibilitySource() : visibility);
     for (std::size_t e = 0; e < 90; ++e) {
-      Vec3 expected(0);
+      Vec3 expected(0), size(0);
+      const std::size_t patch = e / patch_entries, mode = e % patch_entries;
       for (std::size_t l = 0; l < lights.size(); ++l)
-        for (std::size_t i = 5 * e; i < 5 * e + 5; ++i)
-          expected +=
-              (seen ? 1 : share(l, i)) / 5.0f *
+        for (std::size_t k = 0; k < 5; ++k) {
+          const std::size_t i = 5 * patch + k;
+          const float mix = patch_entries == 1 ? 0.2f : entries.mix[i * patch_entries + mode];
+          const Vec3 part =
+              (seen ? 1 : share(l, i)) * mix *
               directIrradiance(lights[l], relighter.entryPoints()[i], relighter.entryNormals()[i]).rgb;
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[e].rgb[c], expected[c], 2e-5f * (1 + expected[c])) << e;
+          expected += part, size += glm::abs(part);
+        }
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[e].rgb[c], expected[c], 2e-5f * (1 + size[c])) << e;
     }
   }
 }
 
+TEST(TransferRelighter, EntriesAreMixedFromDirectLightAtThePointsOfTheirPatch) {
+  expectMixedEntries(1);  // means
+  expectMixedEntries(3);
+}
+
 TEST(TransferRelighter, ExitsAreTheTransferOfTheEntries) {
-  asset::Asset bake = madeBake({});
-  asset::Transfer t = asset::readTransfer(bake.layers[0], bake.atlas);
-  t.entries.weight.assign(40, 1.0f);
-  for (std::size_t e = 0; e < 40; ++e) t.entries.weight[e] = 0.1f * static_cast<float>(e);
-  bake.layers[0].tables = asset::transferTables(t, bake.atlas);
+  const asset::Asset bake = madeBake({}, 4, 3, 2);  // entries below 0 too
+  const asset::Transfer t = asset::readTransfer(bake.layers[0], bake.atlas);
   TransferRelighter relighter(bake, bake.layers[0]);
   const auto entries = copy(relighter.entryIrradiance(someLights(9)));
   std::vector<float> in, expected(300);
   for (std::size_t e = 0; e < 40; ++e)
-    for (int c = 0; c < 3; ++c) in.push_back(t.entries.weight[e] * entries[e].rgb[c]);
+    for (int c = 0; c < 3; ++c) in.push_back(entries[e].rgb[c]);
   codec::multiply(t.matrix, in, expected);
   float largest = 0;
   for (const float v : expected) largest = std::max(largest, std::abs(v));

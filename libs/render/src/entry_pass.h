@@ -12,18 +12,12 @@
 
 namespace relume::render {
 
-/// Where the product takes an entry's irradiance: its place among the columns, and its weight.
-struct ColumnPlace {
-  std::uint32_t place;
-  float weight;
-};
-
 class EntryPass {
  public:
   /// `points` with `normals`: single places whose irradiance is wanted too (asset/transfer.h, NearShares).
-  /// `columns`: [entries].
+  /// `columns`: where the product takes an entry's irradiance, its place among the columns; [entries].
   EntryPass(const asset::Entries& entries, std::span<const Point> points, std::span<const Normal> normals,
-            std::span<const ColumnPlace> columns);
+            std::span<const std::uint32_t> columns);
 
   /// Room for so many lights; all have to be evaluated anew after it has grown.
   void reserve(std::size_t lights);
@@ -33,16 +27,17 @@ class EntryPass {
   void sum(std::size_t lights, const Buffer& x);
 
   std::size_t entries() const { return entries_; }
-  const Program& factors() const { return factors_program_; }
+  /// Takes shadow maps.
+  const Program& receivedProgram() const { return received_program_; }
   std::size_t reserved() const { return reserved_; }
   /// By group: entries, then points. shape: [groups] of vec4
   const Buffer& irradiance() const { return irradiance_; }
   std::vector<Irradiance> readEntries() const;  ///< waits for the device
 
  private:
-  std::size_t entries_, samples_, groups_, reserved_ = 0;
-  Program factors_program_, sums_program_;
-  Buffer points_, normals_, columns_, factors_, irradiance_;
+  std::size_t entries_, samples_, patch_points_, points_, groups_, reserved_ = 0;
+  Program received_program_, factors_program_, sums_program_;
+  Buffer positions_, normals_, mix_of_entry_, mix_, columns_, received_, factors_, irradiance_;
 };
 
 }  // namespace relume::render

@@ -152,13 +152,6 @@ void ProductPass::placeSamples(const codec::BlockMatrix& m, const std::vector<Q>
   from_ = Buffer(from);
 }
 
-std::vector<ColumnPlace> ProductPass::columns(std::span<const float> weight) const {
-  std::vector<ColumnPlace> out;
-  for (std::size_t j = 0; j < place_.size(); ++j)
-    out.push_back({place_[j], weight.empty() ? 1.0f : weight[j]});
-  return out;
-}
-
 void ProductPass::write(std::span<const Irradiance> x) {
   std::vector<Vec4> placed(x_.bytes() / sizeof(Vec4), Vec4(0));
   for (std::size_t j = 0; j < x.size(); ++j) placed[place_[j]] = Vec4(x[j].rgb, 0);

@@ -19,8 +19,8 @@ class ProductPass {
   /// Throws Error kUnsupported where the device cannot hold its samples in one buffer, kOutOfMemory.
   explicit ProductPass(const codec::BlockMatrix& m);
 
-  /// shape: [columns]; `weight`: [columns] or empty, all 1.
-  std::vector<ColumnPlace> columns(std::span<const float> weight) const;
+  /// The place of each column; shape: [columns]
+  const std::vector<std::uint32_t>& columns() const { return place_; }
   /// What is multiplied, by place; written before multiply().
   const Buffer& x() const { return x_; }
   void write(std::span<const Irradiance> x);  ///< the same from memory, by column

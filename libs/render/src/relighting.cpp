@@ -7,14 +7,14 @@ namespace relume::render {
 
 Relighting::Relighting(const asset::Asset& asset, const asset::Layer& layer) : texels_(asset.atlas) {
   const asset::Transfer transfer = asset::readTransfer(layer, asset.atlas);
-  std::vector<ColumnPlace> columns;
+  std::vector<std::uint32_t> columns;
   if (transfer.exits.kind == asset::Exits::Kind::kProbes) {
     host_.emplace(asset, layer);
-    columns.assign(transfer.entries.size(), {0, 1.0f});
+    columns.assign(transfer.entries.size(), 0);
     unused_ = Buffer(sizeof(Vec4));
   } else {
     product_.emplace(transfer.matrix);
-    columns = product_->columns(transfer.entries.weight);
+    columns = product_->columns();
     texels_.interpolateBy(transfer.exits.kind == asset::Exits::Kind::kVertices
                               ? relight::ExitInterpolation(transfer.exits.vertices)
                               : relight::ExitInterpolation(transfer.exits, transfer.matrix.rows, asset.atlas),

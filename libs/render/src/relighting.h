@@ -21,7 +21,7 @@ class Relighting {
   /// `changed`: by light, whether it or its shadows did. Lights are bound (binding 1), and shadow maps are.
   void run(std::span<const std::uint8_t> changed, PassTimer& timer);
   /// For the shadow maps' uniforms.
-  const Program& factors() const { return entries_->factors(); }
+  const Program& received() const { return entries_->receivedProgram(); }
   const Texture& pages() const { return texels_.pages(); }
   std::vector<Irradiance> readEntries() const { return entries_->readEntries(); }
   std::vector<Irradiance> readTexels() const { return texels_.read(); }

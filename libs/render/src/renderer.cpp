@@ -136,7 +136,7 @@ std::vector<std::uint8_t> Renderer::Impl::updateLights(const FrameSettings& fram
 void Renderer::Impl::relight(std::span<const std::uint8_t> changed) {
   if (!relighting || !strength_changed) return;
   lights_buffer.bindStorage(1);
-  shadows.bind(relighting->factors());
+  shadows.bind(relighting->received());
   relighting->run(changed, timer);
 }
 

@@ -39,6 +39,7 @@ TEST(LightWalks, InASphereEveryPlaceSeesThemAlike) {
   SilentProgress silent;
   LightPathOptions options = small(EntryPlacement::kPatches);
   options.transfer = TransferBy::kWalks, options.walks = 64, options.exit_side = 32;
+  options.patch_entries = 1;  // of which all are 1 under even light
   const LightPaths paths(sphere.tracer, sphere.atlas, sphere.texels, options, silent);
   const std::vector<float> t = transfer(paths);
   double sum = 0, area = 0;
@@ -131,7 +132,7 @@ TEST(ShortWays, AreWhatTheTransferLeavesOut) {
   const made::Lit furnace(made::box({2, 2, 2}, Vec3(rho), Vec3(0)), 64);
   SilentProgress silent;
   LightPathOptions options = small(EntryPlacement::kPatches);
-  options.near = 0.4f;
+  options.near = 0.4f, options.patch_entries = 1;  // of which all are 1 under even light
   const LightPaths paths(furnace.tracer, furnace.atlas, furnace.texels, options, silent);
   const std::vector<Vec3> near = paths.nearShares(silent);
   const std::vector<float> t = transfer(paths);

@@ -17,14 +17,13 @@
 #include "direction_batch.h"
 #include "light_paths/clusters.h"
 #include "light_paths/elements.h"
+#include "light_paths/entry_set.h"
 #include "light_paths/exit_rays.h"
 #include "light_paths/exit_substitutes.h"
 #include "light_paths/exit_tiles.h"
 #include "light_paths/light_walks.h"
-#include "light_paths/piece_entries.h"
 #include "light_paths/places.h"
 #include "light_paths/point_exits.h"
-#include "light_paths/shot_entries.h"
 #include "light_paths/typical_light.h"
 #include "light_paths/vector_row.h"
 #include "relume/core/check.h"
@@ -38,9 +37,9 @@ namespace {
 
 constexpr std::size_t kPiecesOfElement = 4;
 // What a turn of the normal costs in clusters (Clusters).
-constexpr float kEntryNormalWeight = 1.0f, kElementNormalWeight = 1.0f;
+constexpr float kElementNormalWeight = 1.0f;
 // How much less finely that is divided which no light comes to (LightView).
-constexpr float kLeastEntries = 1.0f / 32, kLeastElements = 1.0f / 8, kLeastPieces = 1.0f / 8;
+constexpr float kLeastElements = 1.0f / 8, kLeastPieces = 1.0f / 8;
 constexpr double kResidual = 1e-4;
 constexpr std::uint32_t kFewestExitRays = 16;  // of a texel
 constexpr std::uint32_t kPiecePlaces = 4;      // where light on a piece is taken
@@ -55,6 +54,8 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
   require(o.entry_samples > 0 && o.entry_samples <= 1024, "samples of an entry are not between 1 and 1024",
           "16 are enough for lights that keep away from walls");
   require(o.near >= 0.0f && o.near < kInfinity, "the way that is near is no length", "take half a metre");
+  require(o.patch_entries > 0 && o.patch_entries <= 64, "entries of a patch are not between 1 and 64",
+          "4 are usual");
   require(o.receivers == Receivers::kTexels || (o.near == 0 && o.transfer == TransferBy::kGathering),
           "short ways and walks are for exits at texels", "take one or the other");
   require(o.probe_spacing > 0 && o.probe_spacing < kInfinity, "the spacing of probes is no length",
@@ -72,7 +73,7 @@ LightPathOptions checked(const LightPathOptions& o, const atlas::Texels& texels)
   if (texels.points.empty())
     throw Error(ErrorCode::kEmptyScene, "light paths", "there are no texels", "bake a static mesh");
   LightPathOptions options = o;
-  if (o.placement == EntryPlacement::kShot) options.entry_samples = 1;
+  if (o.placement == EntryPlacement::kShot) options.entry_samples = options.patch_entries = 1;
   return options;
 }
 
@@ -112,15 +113,17 @@ struct LightPaths::Impl {
     }
     placeAll(progress);
     if (options.transfer == TransferBy::kWalks) {
-      virtual_lights = walk({surface, sides, reflectance}, walk_starts, options.walk_seed, progress);
+      virtual_lights = walk({surface, sides, reflectance}, entry_set.starts, options.walk_seed, progress);
     } else {
       reflected = std::make_unique<ElementLight>(
-          elements, entries.size(),
+          elements, entries().size(),
           [&](std::size_t block, std::span<float> radiosity) { fill(block, radiosity); }, kResidual,
           progress);
     }
     ray_count = sides.rays();
   }
+
+  const Entries& entries() const { return entry_set.entries; }
 
   std::uint32_t firstExitRays() const {
     const std::uint32_t area = options.exit_side * options.exit_side;
@@ -156,115 +159,21 @@ struct LightPaths::Impl {
       pieces = refinedPieces(surface, sides, coarse, view.importance(coarse.all, kLeastPieces), most);
     }
     const LightView view = viewOf(pieces, test, progress);
-    if (options.placement == EntryPlacement::kShot) {
-      shootAtPieces(progress);
-    } else {
-      placeEntries(view, progress);
-    }
+    const PieceScene scene{surface, sides, pieces, reflectance};
+    entry_set = options.placement == EntryPlacement::kShot
+                    ? shotEntries(scene, boxes, options, progress)
+                    : patchEntries(scene, view, boxes, options, progress);
     placeElements(view, progress);
-    first = firstReflection(elements, sides, pieces, reflectance, piece_entries, entries.size(), progress);
+    first = firstReflection(elements, sides, pieces, reflectance, entry_set.on_pieces, entries().size(),
+                            progress);
   }
 
-  /// By side: how much of the light that falls there others see again, but for what it does in between. A
-  /// mean by area alone would be too low where surfaces lie upon each other: those hidden parts are dark, and
-  /// nobody sees them.
-  std::vector<float> placeWeights(const Pieces& of) const {
-    const std::vector<float> area = areasOf(sides, of);
-    std::vector<float> weight(sides.size(), 0.0f);
-    for (std::size_t side = 0; side < sides.size(); ++side) {
-      const std::uint32_t piece = of.of_side[side];
-      if (piece == scene::kNone || !(area[piece] > 0)) continue;
-      const float share = sides.area(side) / area[piece];
-      weight[side] = share * of.all[piece].area * luminance(reflectance.value[sides.point(side)]);
-    }
-    return weight;
-  }
   std::vector<Place> placesOnPieces(const Pieces& of, std::uint64_t seed) const {
-    return placesOn(surface, sides, placeWeights(of), membersOf(of.of_side, of.size()), kPiecePlaces, seed);
+    return placesOn(surface, sides, reflectedShares(sides, of, reflectance), membersOf(of.of_side, of.size()),
+                    kPiecePlaces, seed);
   }
   LightView viewOf(const Pieces& of, const LightSet& lights, Progress& progress) const {
     return {tracer, of.size(), placesOnPieces(of, options.seed + 4), lights, progress};
-  }
-
-  void placeEntries(const LightView& light, Progress& progress) {
-    const std::vector<float> importance = light.importance(pieces.all, kLeastEntries);
-    const Clusters clusters = makeLitClusters(tracer, pieces.all, importance, light,
-                                              {options.entries, kEntryNormalWeight, options.seed},
-                                              Slivers::kLeftOutIfDark, progress);
-    double important = 0;
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-      important += static_cast<double>(pieces.all[i].area * importance[i]);
-    spacing = static_cast<float>(std::sqrt(important / static_cast<double>(clusters.size())));
-    const std::vector<float> weights = placeWeights(pieces);
-    std::vector<float> piece_weights(pieces.size(), 0.0f);
-    for (std::size_t side = 0; side < sides.size(); ++side)
-      if (pieces.of_side[side] != scene::kNone) piece_weights[pieces.of_side[side]] += weights[side];
-    piece_entries = PieceEntries::ofPatches(
-        clusters.of, shapeWithin(clusters.of, clusters.size(), piece_weights, light.facing()));
-    std::vector<std::uint32_t> of_side(sides.size(), scene::kNone);
-    for (std::size_t side = 0; side < of_side.size(); ++side)
-      if (pieces.of_side[side] != scene::kNone) of_side[side] = clusters.of[pieces.of_side[side]];
-    const Members members = membersOf(of_side, clusters.size());
-    entry_places = placesOn(surface, sides, weights, members, options.entry_samples, options.seed);
-    if (options.transfer == TransferBy::kWalks) {
-      std::vector<float> lit(sides.size(), 0.0f);
-      for (std::size_t side = 0; side < lit.size(); ++side)
-        if (pieces.of_side[side] != scene::kNone)
-          for (const EntryShare& s : piece_entries.of(pieces.of_side[side]))
-            lit[side] = s.value * sides.area(side);
-      walk_starts = startsOnPatches(surface, sides, lit, members, options.walks, options.walk_seed);
-    }
-    entries.samples_each = options.entry_samples;
-    for (const Place& p : entry_places) entries.samples.push_back({p.position, p.shading_normal});
-    entries.area.assign(clusters.size(), 0.0f);
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-      if (clusters.of[i] != scene::kNone) entries.area[clusters.of[i]] += pieces.all[i].area;
-    for (const Feature& c : clusters.centre) {
-      entries.centre.emplace_back(c[0], c[1], c[2]);
-      const Vec3 n(c[3], c[4], c[5]);
-      entries.normal.push_back(glm::length(n) > 0 ? glm::normalize(n) : Normal(0, 0, 1));
-    }
-  }
-
-  ShotRays testRays(Progress& progress) const {
-    const std::uint32_t count = std::min(options.test_points, options.entries);
-    ShotRays rays{.from = {}, .each = 1, .aim = options.aim};
-    for (const Light& light : findLights(tracer, boxes, count, {}, options.seed, progress))
-      rays.from.push_back(light.position);
-    if (rays.from.empty())
-      throw Error(ErrorCode::kEmptyScene, "light paths", "there is no room for lights to shoot entries from",
-                  "take entries=patches");
-    rays.each = raysForEntries(tracer, rays, options.entries, options.seed);
-    return rays;
-  }
-
-  void shootAtPieces(Progress& progress) {
-    // What of a piece can be lit: the share of a unit of light on one point of it.
-    const std::vector<float> area = areasOf(sides, pieces);
-    std::vector<EntryShare> shares;
-    for (const ShotEntry& e : shootEntries(tracer, testRays(progress), options.seed, progress)) {
-      const float length = glm::length(e.position - e.from);
-      const std::uint32_t side = sideWhere(surface, sides, {e.from, (e.position - e.from) / length, length},
-                                           {.where = e.where, .t = length}),
-                          piece = side == scene::kNone ? side : pieces.of_side[side];
-      if (piece == scene::kNone || !(area[piece] > 0)) continue;
-      const auto entry = static_cast<std::uint32_t>(entries.size());
-      shares.push_back({piece, entry, 1.0f / (e.density * area[piece])});
-      walk_starts.push_back({entry, side, e.position, e.normal, 1.0f / e.density, options.walks});
-      const Normal shading = sides.shadingNormal(side);
-      entry_places.push_back({e.position, shading, e.normal});
-      entries.samples.push_back({e.position, shading});
-      entries.area.push_back(1.0f / e.density);
-      entries.centre.push_back(e.position), entries.normal.push_back(shading);
-    }
-    if (entries.size() == 0)
-      throw Error(ErrorCode::kEmptyScene, "light paths", "no entry could be shot at a surface with texels",
-                  "take entries=patches");
-    entries.samples_each = 1;
-    piece_entries = PieceEntries(pieces.size(), std::move(shares));
-    double seen = 0;
-    for (const float a : entries.area) seen += static_cast<double>(a);
-    spacing = static_cast<float>(std::sqrt(seen / static_cast<double>(entries.size())));
   }
 
   void placeElements(const LightView& light, Progress& progress) {
@@ -312,7 +221,7 @@ struct LightPaths::Impl {
   void rows(std::size_t tile, std::span<float> out) const {
     const auto of =
         std::span(tiles.row).subspan(tiles.first[tile], tiles.first[tile + 1] - tiles.first[tile]);
-    const std::size_t columns = entries.size();
+    const std::size_t columns = entries().size();
     const std::size_t each = exits.rows_each, rows = of.size() * each;
     RELUME_CHECK_EQ(out.size(), rows * 3 * columns);
     std::fill(out.begin(), out.end(), 0.0f);
@@ -330,7 +239,7 @@ struct LightPaths::Impl {
       const ExitView& view = look.views[r % each];
       float* row = out.data() + r * 3 * columns;
       for (const Weight& w : view.direct)
-        for (const EntryShare& s : piece_entries.of(w.index))
+        for (const EntryShare& s : entry_set.on_pieces.of(w.index))
           for (std::size_t c = 0; c < 3; ++c)
             row[c * columns + s.entry] += s.value * w.value[static_cast<int>(c)];
       weights.insert(weights.end(), view.reflected.begin(), view.reflected.end());
@@ -418,17 +327,34 @@ struct LightPaths::Impl {
     return result;
   }
 
+  /// shape: [lights][entries]
+  std::vector<Vec3> lightOnEntries(std::span<const Light> lights, Progress& progress) const {
+    const Entries& e = entries();
+    const std::vector<Vec3> on_places = lightOn(lights, entry_set.places, 1, progress);
+    std::vector<Vec3> result(lights.size() * e.size(), Vec3(0.0f));
+    for (std::size_t l = 0; l < lights.size(); ++l)
+      for (std::size_t p = 0, place = 0; p < e.patches(); ++p) {
+        const std::size_t modes = e.first[p + 1] - e.first[p];
+        const float* mix = e.mix.data() + std::size_t{e.samples_each} * e.first[p];
+        Vec3* of_patch = result.data() + l * e.size() + e.first[p];
+        for (std::size_t k = 0; k < e.samples_each; ++k, ++place)
+          for (std::size_t m = 0; m < modes; ++m)
+            of_patch[m] += mix[k * modes + m] * on_places[l * entry_set.places.size() + place];
+      }
+    return result;
+  }
+
   std::vector<Irradiance> irradiance(std::span<const Light> lights, LitBy by,
                                      std::span<const std::uint32_t> which, GatherRays rays,
                                      Progress& progress) const {
     std::vector<Vec3> on_piece;  // [lights][pieces]
     if (by == LitBy::kEntries) {
-      const std::vector<Vec3> on_entry = lightOn(lights, entry_places, options.entry_samples, progress);
+      const std::vector<Vec3> on_entry = lightOnEntries(lights, progress);
       on_piece.assign(lights.size() * pieces.size(), Vec3(0.0f));
       for (std::size_t l = 0; l < lights.size(); ++l)
         for (std::size_t p = 0; p < pieces.size(); ++p)
-          for (const EntryShare& s : piece_entries.of(p))
-            on_piece[l * pieces.size() + p] += s.value * on_entry[l * entries.size() + s.entry];
+          for (const EntryShare& s : entry_set.on_pieces.of(p))
+            on_piece[l * pieces.size() + p] += s.value * on_entry[l * entries().size() + s.entry];
     } else {
       const std::vector<Place> places = placesOnPieces(pieces, options.seed + 2);
       on_piece = lightOn(lights, places, kPiecePlaces, progress);
@@ -494,19 +420,15 @@ struct LightPaths::Impl {
   const Patches exit_patches;
   const std::vector<std::uint32_t> gathered_from;  // by exit
   const SampleTable directions;
-  PieceEntries piece_entries;
-  std::vector<Place> entry_places;
-  Entries entries;
+  EntrySet entry_set;
   Exits exits;
   PointExits points;  // of exits that are no blocks
   ExitTiles tiles;
   Elements elements;
   FirstReflection first;
   std::unique_ptr<ElementLight> reflected;  // of kGathering
-  std::vector<WalkStart> walk_starts;       // of kWalks
   std::vector<VirtualLight> virtual_lights;
   const ExitScene exit_scene;
-  float spacing = 0;
   std::uint64_t ray_count = 0;
 };
 
@@ -516,10 +438,10 @@ LightPaths::LightPaths(const trace::Tracer& tracer, const atlas::Atlas& atlas, c
 LightPaths::~LightPaths() = default;
 LightPaths::LightPaths(LightPaths&&) noexcept = default;
 
-const Entries& LightPaths::entries() const { return impl_->entries; }
+const Entries& LightPaths::entries() const { return impl_->entry_set.entries; }
 const Exits& LightPaths::exits() const { return impl_->exits; }
 const ExitTiles& LightPaths::tiles() const { return impl_->tiles; }
-float LightPaths::spacing() const { return impl_->spacing; }
+float LightPaths::spacing() const { return impl_->entry_set.spacing; }
 std::uint64_t LightPaths::bytes() const {
   const Impl& i = *impl_;
   return (i.reflected ? i.reflected->bytes() : i.virtual_lights.size() * sizeof(VirtualLight)) +
@@ -539,8 +461,7 @@ LightSet LightPaths::lights(std::uint32_t count, const LightPlaces& places, std:
 std::vector<float> LightPaths::entryIrradiance(std::span<const Light> lights, Progress& progress) const {
   LightSet white(lights.begin(), lights.end());
   for (Light& light : white) light.colour = Vec3(1.0f);
-  const std::vector<Vec3> all =
-      impl_->lightOn(white, impl_->entry_places, impl_->options.entry_samples, progress);
+  const std::vector<Vec3> all = impl_->lightOnEntries(white, progress);
   std::vector<float> result;
   result.reserve(all.size());
   for (const Vec3& e : all) result.push_back(e.x);

@@ -2,6 +2,7 @@
 #include "light_paths/light_walks.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "light_paths/strata.h"
 #include "relume/core/frame.h"
@@ -56,20 +57,29 @@ ExitPlace placeOn(const SurfaceScene& scene, const Patches& exits, std::size_t e
 
 }  // namespace
 
-std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides,
-                                       std::span<const float> lit, const Members& groups, std::uint32_t walks,
-                                       std::uint64_t seed) {
+std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides, const PatchLight& light,
+                                       const Members& patches, std::uint32_t walks, std::uint64_t seed) {
   std::vector<WalkStart> starts;
-  for (std::uint32_t g = 0; g + 1 < groups.first.size(); ++g) {
-    double area = 0;
-    for (const std::uint32_t side : groups.of(g)) area += static_cast<double>(lit[side]);
-    forEachStratum(groups.of(g), lit, walks, streamOf(seed, g, kWalkDimensions),
-                   [&](std::uint32_t, std::uint32_t side, Vec2 u) {
-                     starts.push_back(
-                         {g, side, footprintPosition(scene.texels, scene.texels.points[sides.point(side)], u),
-                          sides.geometricNormal(side), static_cast<float>(area / walks), 1});
-                   });
-  }
+  std::vector<float> lit(sides.size(), 0.0f), size(sides.size(), 0.0f);  // by side, m^2
+  for (std::uint32_t p = 0; p + 1 < patches.first.size(); ++p)
+    for (std::uint32_t entry = light.first[p]; entry < light.first[p + 1]; ++entry) {
+      double all = 0;
+      for (const std::uint32_t side : patches.of(p)) {
+        lit[side] = 0;
+        for (const EntryShare& s : light.on_pieces.of(light.pieces.of_side[side]))
+          if (s.entry == entry) lit[side] = s.value * sides.area(side);
+        size[side] = std::abs(lit[side]), all += static_cast<double>(size[side]);
+      }
+      if (!(all > 0)) continue;
+      forEachStratum(
+          patches.of(p), size, walks, streamOf(seed, entry, kWalkDimensions),
+          [&](std::uint32_t, std::uint32_t side, Vec2 u) {
+            const auto area = static_cast<float>(all / walks);
+            starts.push_back({entry, side,
+                              footprintPosition(scene.texels, scene.texels.points[sides.point(side)], u),
+                              sides.geometricNormal(side), lit[side] < 0 ? -area : area, 1});
+          });
+    }
   return starts;
 }
 

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "light_paths/members.h"
+#include "light_paths/piece_entries.h"
+#include "light_paths/pieces.h"
 #include "light_paths/side_rays.h"
 #include "light_paths/sides.h"
 #include "lightmap/reflectance.h"
@@ -32,7 +34,7 @@ struct WalkStart {
   std::uint32_t entry = 0, side = 0;
   Point position{0};
   Normal normal{0, 0, 1};
-  float area = 0;           ///< m^2
+  float area = 0;           ///< m^2; below 0 for parts of a mode that are darker for it
   std::uint32_t walks = 1;  ///< that share it
 };
 
@@ -43,11 +45,16 @@ struct WalkScene {
   const MeanReflectance& reflectance;
 };
 
-/// `walks` walks of each group of sides, which begin all over it. lit: by side, what of a unit of irradiance
-/// on the group falls there, m^2.
-std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides,
-                                       std::span<const float> lit, const Members& groups, std::uint32_t walks,
-                                       std::uint64_t seed);
+/// What light on patches is, by the entries of each.
+struct PatchLight {
+  const Pieces& pieces;
+  const PieceEntries& on_pieces;
+  std::span<const std::uint32_t> first;  ///< by patch, and one more: its entries
+};
+
+/// `walks` walks of each entry, which begin all over its patch. patches: sides of each.
+std::vector<WalkStart> startsOnPatches(const SurfaceScene& scene, const Sides& sides, const PatchLight& light,
+                                       const Members& patches, std::uint32_t walks, std::uint64_t seed);
 
 /// The side of a texel where a ray ends; scene::kNone: none.
 std::uint32_t sideWhere(const SurfaceScene& scene, const Sides& sides, const trace::Ray& ray,

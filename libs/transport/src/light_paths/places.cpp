@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "light_paths/strata.h"
+#include "light_paths/typical_light.h"
 #include "morton.h"
 #include "relume/core/frame.h"
 #include "relume/core/parallel.h"
+#include "relume/core/quantity.h"
 #include "relume/core/sampling.h"
 
 namespace relume::transport {
@@ -49,6 +51,19 @@ Point positionOn(const SurfaceScene& scene, const Sides& sides, std::uint32_t si
 }
 
 }  // namespace
+
+std::vector<float> reflectedShares(const Sides& sides, const Pieces& pieces,
+                                   const MeanReflectance& reflectance) {
+  const std::vector<float> area = areasOf(sides, pieces);
+  std::vector<float> weight(sides.size(), 0.0f);
+  for (std::size_t side = 0; side < sides.size(); ++side) {
+    const std::uint32_t piece = pieces.of_side[side];
+    if (piece == scene::kNone || !(area[piece] > 0)) continue;
+    const float share = sides.area(side) / area[piece];
+    weight[side] = share * pieces.all[piece].area * luminance(reflectance.value[sides.point(side)]);
+  }
+  return weight;
+}
 
 std::vector<Place> placesOn(const SurfaceScene& scene, const Sides& sides, std::span<const float> weight,
                             const Members& groups, std::uint32_t each, std::uint64_t seed) {

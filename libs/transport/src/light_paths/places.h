@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "light_paths/members.h"
+#include "light_paths/pieces.h"
 #include "light_paths/sides.h"
+#include "lightmap/reflectance.h"
 #include "relume/core/light.h"
 
 namespace relume::transport {
@@ -14,6 +16,12 @@ struct Place {
   Point position{0};
   Normal shading_normal{0, 0, 1}, geometric_normal{0, 0, 1};
 };
+
+/// By side: how much of the light that falls there others see again, but for what it does in between. A mean
+/// by area alone would be too low where surfaces lie upon each other: those hidden parts are dark, and nobody
+/// sees them.
+std::vector<float> reflectedShares(const Sides& sides, const Pieces& pieces,
+                                   const MeanReflectance& reflectance);
 
 /// `each` places on every group, equal shares of its weight each: strata along a curve through the group.
 /// weight: by side, not negative. Shape: [groups][each]. Every group has a member. None lies where something

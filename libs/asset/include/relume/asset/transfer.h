@@ -13,15 +13,22 @@
 
 namespace relume::asset {
 
-/// Where light enters: parts of the surface, each with fixed points at which its irradiance is taken.
+/// Where light enters: patches of the surface, each with fixed points at which irradiance is taken. A patch
+/// has one entry or several: first its mean light, then modes of how it varies, which may be below 0.
 struct Entries {
-  std::uint32_t samples = 1;    ///< points of an entry, equal shares of its area
-  std::vector<Point> position;  ///< world; shape: [entries][samples]
-  std::vector<Normal> normal;   ///< world, unit length; shape: [entries][samples]
-  std::vector<float> area;      ///< m^2; shape: [entries]
-  std::vector<float> weight;    ///< shape: [entries], or empty: all 1; factor of an entry's irradiance
+  std::uint32_t samples = 1;         ///< points of a patch, equal shares of its light
+  std::vector<Point> position;       ///< world; shape: [patches][samples]
+  std::vector<Normal> normal;        ///< world, unit length; shape: [patches][samples]
+  std::vector<std::uint32_t> first;  ///< by patch, and one more: its entries
+  /// Shape: by patch [samples][entries of the patch]. An entry is the sum over its patch's points of mix
+  /// times the direct irradiance there. The file keeps 8 bits of it.
+  std::vector<float> mix;
+  std::vector<float> area;  ///< m^2; shape: [entries]; equal shares of the patch's
 
   std::size_t size() const { return area.size(); }
+  std::size_t patches() const { return first.empty() ? 0 : first.size() - 1; }
+  /// One entry for each of so many patches, the mean over its points.
+  void setMeans(std::size_t count);
 };
 
 /// Exits at vertices of meshes: a row of the matrix for each. A vertex of a mesh has the exit at its place in
@@ -69,8 +76,8 @@ struct TransferErrors {
   float encoding = 0;  ///< of the stored matrix
 };
 
-/// Irradiance of exit x = sum over entries e of matrix[x][e] weight[e] mean over e's points of their direct
-/// irradiance. Indirect light alone: the direct light at the exit is not in it.
+/// Irradiance of exit x = sum over entries e of matrix[x][e] e. Indirect light alone: the direct light at the
+/// exit is not in it.
 struct Transfer {
   codec::BlockMatrix matrix;  ///< rows: exits (of probes 9 for each), columns: entries
   Entries entries;
@@ -79,7 +86,7 @@ struct Transfer {
   std::optional<TransferErrors> errors;
 
   /// Throws Error kCorruptAsset, naming `layer`, unless the parts fit each other and `atlas`, numbers are
-  /// finite, areas and weights not negative, normals of unit length, and every block of texels lies in one
+  /// finite, areas not negative, normals of unit length, and every block of texels lies in one
   /// chart.
   void check(const AtlasTable& atlas, const std::string& layer) const;
 };
@@ -89,7 +96,8 @@ struct Transfer {
 float entryPointStep(const Entries& entries);
 
 /// Tables for Layer::tables. Positions of entry points are kept to 2^-12 of the mean entry's side (or 2^-23
-/// of the extent, where that is coarser), normals to 1e-4 rad, all else bit for bit. Throws as check().
+/// of the extent, where that is coarser), normals to 1e-4 rad, mix to 1/254 of the largest of its entry, all
+/// else bit for bit. Throws as check().
 std::vector<Table> transferTables(const Transfer& transfer, const AtlasTable& atlas);
 
 /// Throws Error kMismatch where `layer` has no transfer, kCorruptAsset where its tables do not make a sound

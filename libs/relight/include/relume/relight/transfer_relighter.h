@@ -15,7 +15,8 @@
 
 namespace relume::relight {
 
-/// Lights to irradiance of entries (patches that light reaches first), entries to exits (blocks of texels) by
+/// Lights to entries (the mean light of patches that it reaches first, and modes of how it varies there),
+/// entries to exits (blocks of texels) by
 /// one product with the stored transfer, exits to texels by interpolation within their chart. All values are
 /// *indirect* irradiance: what an engine adds to its own direct light.
 ///
@@ -42,11 +43,13 @@ class TransferRelighter {
   Irradiance atProbes(Point p, Normal n) const;
   std::size_t texelCount() const;
 
-  /// The points at which light enters, each entry's together: where visibility is asked. World; shape:
-  /// [entries][pointsPerEntry]
+  /// Patches, their points and the entries that are mixed from the light there.
+  const asset::Entries& entries() const;
+  /// The points at which light enters, each patch's together: where visibility is asked. World; shape:
+  /// [patches][pointsPerPatch]
   std::span<const Point> entryPoints() const;
   std::span<const Normal> entryNormals() const;
-  std::size_t pointsPerEntry() const;
+  std::size_t pointsPerPatch() const;
   /// Where visibility is asked: the points of entries, then, of a bake that leaves short ways to obscurance,
   /// the middles of all texels.
   std::span<const Point> visibilityPoints() const;
@@ -55,12 +58,12 @@ class TransferRelighter {
   bool leavesShortWays() const;
   std::span<const float> entryAreas() const;  ///< m^2; shape: [entries]
 
-  /// Mean direct irradiance of each entry (and of each texel, kept for texels(), where short ways are left
-  /// out), shape: [entries]; valid until the next call. Area lights by L A
-  /// cos_l / (r^2 + A / pi) ([SzirmayKalos] section 10). A light that is the same as at its place in the set
-  /// of the call before, but for colour and intensity, costs nothing and its visibility is not asked again;
-  /// see forgetVisibility. Throws Error kInvalidValue, and keeps what was, for a light that is not finite or
-  /// is negative, and for visibility outside [0, 1]; else only what `visibility` throws.
+  /// What each entry has of the lights (and the direct irradiance of each texel, kept for texels(), where
+  /// short ways are left out), shape: [entries]; valid until the next call. Area lights by L A cos_l / (r^2 +
+  /// A / pi) ([SzirmayKalos] section 10). A light that is the same as at its place in the set of the call
+  /// before, but for colour and intensity, costs nothing and its visibility is not asked again; see
+  /// forgetVisibility. Throws Error kInvalidValue, and keeps what was, for a light that is not finite or is
+  /// negative, and for visibility outside [0, 1]; else only what `visibility` throws.
   std::span<const Irradiance> entryIrradiance(const LightSet& lights,
                                               const VisibilitySource& visibility = {});
   /// To be called when something else than a light has moved or `visibility` answers otherwise.

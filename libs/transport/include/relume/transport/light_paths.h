@@ -4,8 +4,9 @@
 //   I_x = sum_e T_xe E_e,
 // by colour channel; light that arrives at x straight from a light is not in it. Based on:
 //   [USKP09] Umenhoffer et al. Multi-scale precomputed radiance transfer. Sections 5 to 7 and 10.
-// Differs from it: an entry is a patch of surface and not a point, so that T has no spikes and no path is too
-// short to count; irradiance on it is a mean over fixed places; T comes from radiosity over small elements
+// Differs from it: light enters at patches of surface and not at points, so that T has no spikes and no path
+// is too short to count; a patch has entries for its mean light and for modes of how it varies, taken from
+// irradiance at fixed places; T comes from radiosity over small elements
 // and rays that gather at the exits instead of random walks from the entries. Measured:
 // docs/light-paths.md. Entries may also be points that are shot from where lights may be ([USKP09] 7.1): then
 // T holds 1 / d(e), d their density, and light on a point counts for the small piece of surface about it.
@@ -49,8 +50,12 @@ enum class Receivers : std::uint8_t {
 struct LightPathOptions {
   std::uint32_t entries = 1024;  ///< about so many; a few more where walls divide patches
   EntryPlacement placement = EntryPlacement::kPatches;
-  std::uint32_t entry_samples = 16;  ///< places on an entry where its irradiance is taken; kShot: always 1
-  std::uint32_t test_points = 128;   ///< of kShot, spread over the space where lights may be
+  /// Entries that a patch has on average: its mean light, and modes about it (principal components of the
+  /// light of lamps). More of them make patches larger. kShot: always 1.
+  std::uint32_t patch_entries = 2;
+  /// For each entry, places where irradiance is taken: a patch has patch_entries times so many. kShot: 1.
+  std::uint32_t entry_samples = 16;
+  std::uint32_t test_points = 128;  ///< of kShot, spread over the space where lights may be
   /// Of kShot: about which way lights shine, cosine-weighted; none: all around.
   std::optional<Direction> aim;
   std::uint32_t elements = 8192;     ///< of radiosity, about so many
@@ -71,19 +76,31 @@ struct LightPathOptions {
   std::uint64_t seed = 1;
 };
 
-/// A place where the irradiance on an entry is taken.
+/// A place where irradiance is taken.
 struct EntrySample {
   Point position{0};       ///< on the surface, world
   Normal normal{0, 0, 1};  ///< shading normal on the lit side, unit
 };
 
+/// Light enters at patches. A patch has as many entries as it takes to tell how its light varies: first its
+/// mean, then modes, which are below 0 as often as above. Every one is a sum over the patch's samples of mix
+/// times the irradiance there.
 struct Entries {
-  std::uint32_t samples_each = 1;
-  std::vector<EntrySample> samples;  ///< shape: [entries][samples_each]; equal shares of an entry's area
-  std::vector<float> area;           ///< m^2, by entry; of kShot 1 / d(e), which T holds already
-  std::vector<Point> centre;         ///< by entry: mean position, not always on the surface
-  std::vector<Normal> normal;        ///< by entry: mean normal, unit
-  std::size_t size() const { return area.size(); }
+  std::uint32_t samples_each = 1;    ///< of a patch
+  std::vector<EntrySample> samples;  ///< shape: [patches][samples_each]; equal shares of a patch's light
+  std::vector<std::uint32_t> first;  ///< by patch, and one more: its entries
+  std::vector<float> mix;            ///< shape: by patch [samples_each][entries of the patch]
+  std::vector<float> area;     ///< m^2, by entry: its share of the patch's; of kShot 1 / d(e), in T already
+  std::vector<Point> centre;   ///< by entry: mean position, not always on the surface
+  std::vector<Normal> normal;  ///< by entry: mean normal, unit
+  std::size_t size() const { return first.empty() ? 0 : first.back(); }
+  std::size_t patches() const { return first.empty() ? 0 : first.size() - 1; }
+  /// One entry for each of so many patches, the mean over its samples.
+  void setMeans(std::size_t count) {
+    first.resize(count + 1);
+    std::iota(first.begin(), first.end(), 0u);
+    mix.assign(count * samples_each, 1.0f / static_cast<float>(samples_each));
+  }
 };
 
 /// A block of texels of one chart that share a value, a vertex or a probe.
