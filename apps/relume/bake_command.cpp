@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "command.h"
+#include "day.h"
 #include "files.h"
 #include "lights.h"
 #include "relume/bake/bake.h"
@@ -27,8 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BakeCommandOptions {
-  std::string input, output, lights, bounces, quality = "medium", cache, max_memory, isa, stats, report,
-                                              progress = "auto";
+  std::string input, output, lights, day, bounces, quality = "medium", cache, max_memory, isa, stats, report,
+                                                   progress = "auto";
   std::vector<std::string> layers;
   int atlas_size = atlas::AtlasOptions{}.page_size;
   int gutter = atlas::AtlasOptions{}.gutter;
@@ -58,6 +59,7 @@ bake::BakeOptions toLibrary(const BakeCommandOptions& options) {
     result.lights = chooseLights(options.lights, {});
     result.environment = chooseEnvironment(options.lights);
   }
+  result.day = readDay(options.day);
   result.quality = bake::parseQuality(options.quality);
   result.samples = options.samples;
   result.atlas.page_size = options.atlas_size;
@@ -207,6 +209,10 @@ void addBake(CLI::App& app, Program& program) {
   command->add_option("--layer", options->layers, layerHelp())->allow_extra_args(false);
   command->add_option("--lights", options->lights,
                       "JSON list of lights and an environment; without it, the scene's own lights");
+  command->add_option(
+      "--day", options->day,
+      "DAY.json: place, date and timetable of a layer `day`; without it, the summer solstice at "
+      "55.49 N 9.47 E");
   command->add_option("--bounces", options->bounces, "of layers that have bounces; inf: all");
   command->add_option("--quality", options->quality, "draft, medium, high or final: the error to reach")
       ->check(CLI::IsMember({"draft", "medium", "high", "final"}))

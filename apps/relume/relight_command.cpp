@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "command.h"
+#include "day.h"
 #include "files.h"
 #include "lights.h"
 #include "relit.h"
@@ -18,6 +19,7 @@ namespace relume::app {
 namespace {
 
 struct RelightOptions {
+  std::string time;
   std::string asset, lights, output, layer, ambient = "0";
   float beta = 0.1f;
   bool no_shadows = false;
@@ -51,8 +53,11 @@ void relightAsset(const RelightOptions& options, Progress& progress) {
   if (!options.no_shadows) tracer.emplace(opened->scene);
   Stage stage(progress, "relight", 1);
   const std::vector<Irradiance> irradiance =
-      picture::isTransfer(layer) ? relit(asset, layer, {lights, tracer ? &*tracer : nullptr, options.gains})
-                                 : byObscurance(options, asset, layer, lights, tracer);
+      picture::isTransfer(layer)
+          ? relit(asset, layer,
+                  {lights, tracer ? &*tracer : nullptr, options.gains,
+                   options.time.empty() ? std::nullopt : std::optional(parseTime(options.time))})
+          : byObscurance(options, asset, layer, lights, tracer);
   image::writeImage(options.output, toPages(asset.atlas, irradiance));
 }
 
@@ -66,6 +71,7 @@ void addRelight(CLI::App& app, Program& program) {
       "obscurance all of it.\nExample: relume "
       "relight castle.baked.glb --lights evening.json -o evening.exr");
   command->add_option("ASSET", options->asset, "a baked .glb")->required();
+  command->add_option("--time", options->time, "HH:MM, of a layer `day`; without it, 12:00");
   command->add_option("--lights", options->lights, "JSON list of lights; without it, the scene's own");
   command->add_option("-o,--output", options->output, "irradiance of the atlas, .exr or .hdr")->required();
   command->add_option("--layer", options->layer, "layer to relight; without it, the first");

@@ -9,6 +9,7 @@
 #include "relume/atlas/texels.h"
 #include "relume/core/error.h"
 #include "relume/picture/picture.h"
+#include "relume/relight/day_relighter.h"
 #include "relume/relight/group_relighter.h"
 #include "relume/relight/transfer_relighter.h"
 #include "shadows.h"
@@ -28,6 +29,8 @@ asset::Layer& transferLayer(asset::Asset& asset, const std::string& name) {
 }
 
 namespace {
+
+constexpr double kNoon = 720;  // minutes
 
 std::vector<Vec3> gainsOf(const relight::GroupRelighter& relighter, const std::vector<std::string>& given) {
   const std::vector<std::string>& names = relighter.groupNames();
@@ -50,6 +53,14 @@ std::vector<Irradiance> relit(const asset::Asset& asset, const asset::Layer& lay
   if (layer.kind == "lightgroups") {
     relight::GroupRelighter relighter(asset, layer);
     const std::span<const Irradiance> texels = relighter.evaluate(gainsOf(relighter, how.gains));
+    return {texels.begin(), texels.end()};
+  }
+  if (layer.kind == "day") {
+    relight::DayRelighter relighter(asset, layer);
+    if (relighter.frames().receivers != asset::DayFrames::Receivers::kAtlas)
+      throw Error(ErrorCode::kMismatch, "layer " + layer.name, "knows the pixels of one camera and no texels",
+                  "bake day:receivers=atlas");
+    const std::span<const Irradiance> texels = relighter.evaluate(how.minutes.value_or(kNoon));
     return {texels.begin(), texels.end()};
   }
   relight::TransferRelighter relighter(asset, layer);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the run-time makes of a layer of transfer, as the commands show, write and verify it.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,10 +17,12 @@ namespace relume::app {
 struct Relighting {
   LightSet lights;                        ///< of lightpath
   const trace::Tracer* tracer = nullptr;  ///< whose rays see the lights; null: they are seen everywhere
-  std::vector<std::string> gains;  ///< of lightgroups: "group=2" or "group=1,0.5,0"; others are as baked
+  std::vector<std::string> gains;      ///< of lightgroups: "group=2" or "group=1,0.5,0"; others are as baked
+  std::optional<double> minutes = {};  ///< of a day; none: noon
 };
 
-/// Irradiance at the texels of the atlas table: indirect of a lightpath, what was baked of lightgroups.
+/// Irradiance at the texels of the atlas table: indirect of a lightpath, what was baked of lightgroups,
+/// reflected and sky light of a day.
 /// Throws Error kNoSuchLayer for a layer that is no transfer, kUsage for a gain of no group.
 std::vector<Irradiance> relit(const asset::Asset& asset, const asset::Layer& layer, const Relighting& how);
 

@@ -7,17 +7,20 @@
 #include <optional>
 
 #include "command.h"
+#include "day.h"
 #include "exposure.h"
 #include "files.h"
 #include "gl_picture.h"
 #include "lights.h"
 #include "reference_picture.h"
 #include "relit.h"
+#include "relume/asset/day_frames.h"
 #include "relume/core/file.h"
 #include "relume/image/colour.h"
 #include "relume/image/io.h"
 #include "relume/picture/baked_directions.h"
 #include "relume/picture/picture.h"
+#include "relume/scene/day_sky.h"
 
 namespace relume::app {
 namespace {
@@ -30,6 +33,7 @@ constexpr std::array kViews = {View::kObscurance, View::kOcclusion, View::kLit, 
 struct RenderOptions {
   std::string input, output, mode, view, layer, lights, ambient, background = "0.05", tone = "auto";
   std::string eye, target, size = "960x540", renderer = "cpu", materials, gloss = "ggx";
+  std::string time, day;
   std::vector<std::string> gains;
   std::optional<float> exposure, error;
   std::optional<int> spp, bounces;
@@ -105,7 +109,12 @@ void renderReference(const RenderOptions& options, Progress& progress) {
   const auto opened = open(options.input, {.normal_maps = true});
   const IVec2 size = parseExtent(options.size, "--size");
   for (const std::string& object : options.objects) addObject(opened->scene, object);
-  lightScene(opened->scene, options.lights, options.ambient);
+  if (options.time.empty())
+    lightScene(opened->scene, options.lights, options.ambient);
+  else
+    scene::lightAt(opened->scene,
+                   dayOf(opened->asset ? &*opened->asset : nullptr, options.layer, options.day),
+                   parseTime(options.time));
   transport::ReferenceOptions how;
   how.target_error = options.error.value_or(0.0f);
   how.samples = static_cast<std::uint32_t>(options.spp.value_or(options.error ? 1 << 16 : 64));
@@ -119,14 +128,28 @@ void renderReference(const RenderOptions& options, Progress& progress) {
   writePicture(options, linear, View::kLit, how.background);
 }
 
+std::optional<double> minutesOf(const RenderOptions& options) {
+  return options.time.empty() ? std::nullopt : std::optional(parseTime(options.time));
+}
+
+/// Of what a bake knows of a day; of what it does not (no time was given): null.
+asset::Layer* shownDay(const RenderOptions& options, Opened& opened) {
+  if (options.time.empty()) return nullptr;
+  if (options.mode != "relit")
+    throw Error(ErrorCode::kUsage, "--time", "is of a day's light", "add --mode relit or --mode reference");
+  asset::Layer* layer = opened.asset ? dayLayer(*opened.asset, options.layer) : nullptr;
+  if (!layer) throw Error(ErrorCode::kNoSuchLayer, options.input, "holds no day", "bake --layer day first");
+  return layer;
+}
+
 /// What stands still is lit as the run time lights it; only that throws shadows on what light enters by.
 void relightForPicture(const RenderOptions& options, picture::PictureOptions& picture, Opened& opened) {
   if (!opened.asset)
     throw Error(ErrorCode::kNoSuchLayer, options.input, "carries no bake", "bake it first: relume bake");
   const trace::Tracer shadows(opened.scene);
-  addRelitPlane(*opened.asset, options.layer, {picture.lights, &shadows, options.gains});
+  addRelitPlane(*opened.asset, picture.layer, {picture.lights, &shadows, options.gains, minutesOf(options)});
   // What holds all light already needs no lamps beside it.
-  const auto& parameters = transferLayer(*opened.asset, options.layer).parameters;
+  const auto& parameters = transferLayer(*opened.asset, picture.layer).parameters;
   const auto part = parameters.find("part");
   if (part != parameters.end() && part->second != asset::Parameter(std::string("indirect")))
     picture.lights.clear();
@@ -169,13 +192,16 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   const auto opened = open(options.input, {.normal_maps = true});
   std::vector<Group> objects;
   for (const std::string& object : options.objects) objects.push_back(addObject(opened->scene, object));
+  asset::Layer* day = shownDay(options, *opened);
+  if (day) scene::lightAt(opened->scene, dayOf(&*opened->asset, day->name, options.day), *minutesOf(options));
   const trace::Tracer tracer(opened->scene, {.isa = "", .include_dynamic = true});
   const IVec2 size = parseExtent(options.size, "--size");
   picture::PictureOptions picture{.width = size.x, .height = size.y, .samples = options.spp.value_or(16)};
   picture.view = options.mode == "relit" ? View::kRelit : viewOf(options.view, *opened);
   if (options.mode == "relit" && showsOwnLight(*opened, options.layer)) picture.view = View::kLightmap;
   const bool gl = options.renderer == "gl";
-  picture.layer = options.layer;
+  picture.layer = day ? day->name : options.layer;
+  if (day) picture.environment = opened->scene.environment;
   picture.gloss = options.gloss == "none"    ? picture::Gloss::kNone
                   : options.gloss == "phong" ? picture::Gloss::kPhong
                                              : picture::Gloss::kGgx;
@@ -197,12 +223,18 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
                 "add --mode relit or --view indirect");
   picture.background = parseTriple(options.background, "--background", true);
   const picture::Viewpoint viewpoint = viewpointOf(options, size, tracer);
-  if (isRelit(picture.view) && !(gl && followsLamps(*opened, options.layer)))
+  const bool pixels =
+      day && asset::dayFramesOf(*day, opened->asset->atlas).receivers != asset::DayFrames::Receivers::kAtlas;
+  if (pixels)
+    day->planes = {{.name = "value",
+                    .channels = 3,
+                    .values = std::vector<float>(opened->asset->atlas.pageTexels() * 3, 0.0f)}};
+  else if (isRelit(picture.view) && !(gl && followsLamps(*opened, picture.layer)))
     relightForPicture(options, picture, *opened);
   const asset::Asset* asset = opened->asset ? &*opened->asset : nullptr;
-  const image::Image linear =
-      gl ? glPicture(opened->scene, asset, viewpoint, picture, extrasOf(options, objects))
-         : picture::render(tracer, asset, viewpoint, picture, progress);
+  image::Image linear = gl ? glPicture(opened->scene, asset, viewpoint, picture, extrasOf(options, objects))
+                           : picture::render(tracer, asset, viewpoint, picture, progress);
+  if (pixels) addPixelLight(tracer, *asset, *day, *minutesOf(options), viewpoint, picture, linear, progress);
   writePicture(options, linear, picture.view, picture.background);
 }
 
@@ -278,6 +310,11 @@ void addRender(CLI::App& app, Program& program) {
   command->add_option("--gain", options->gains,
                       "of lightgroups, repeatable: GROUP=NUMBER or GROUP=R,G,B; without it, lamps as baked");
   command->add_option("--lights", options->lights, "JSON list of lights; without it, the scene's own");
+  command
+      ->add_option("--time", options->time,
+                   "HH:MM: sun, sky and lamps at that time of a baked day; needs --mode relit or reference")
+      ->needs(mode);
+  command->add_option("--day", options->day, "DAY.json instead of the day that was baked");
   command->add_option("--ambient", options->ambient,
                       "ambient irradiance, one number or R,G,B; without it, pi, or 0.3 beside lights. With "
                       "--mode, from an environment of that constant light; without it, none beside lights");

@@ -96,7 +96,8 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
                                .texels = p.texels,
                                .table = asset.atlas,
                                .quality = p.quality,
-                               .seed = options.seed};
+                               .seed = options.seed,
+                               .day = options.day};
     const LayerTask task{.prepared = p,
                          .layer = prepared_layer,
                          .context = context,

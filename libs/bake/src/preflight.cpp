@@ -61,7 +61,8 @@ Preflight preflight(const scene::gltf::Document& document, const BakeOptions& op
                                .texels = p.texels,
                                .table = table,
                                .quality = p.quality,
-                               .seed = options.seed};
+                               .seed = options.seed,
+                               .day = options.day};
     Preflight::Layer plan = layer.kind->prepare ? planTexels(layer, context, p, options, progress)
                                                 : planWhole(layer, context, p, options, progress);
     result.forecast_seconds += plan.forecast_seconds;

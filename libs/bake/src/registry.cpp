@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "day_layer.h"
 #include "directional_layer.h"
 #include "lightmap_layer.h"
 #include "lightpath_layer.h"
@@ -252,6 +253,49 @@ std::vector<LayerKind> makeRegistry() {
             {"bits", Type::kChoice, "8", {"8", "16"}, "of a stored number"},
             kMaterials},
        .prepare_whole = prepareLightPaths},
+      {.name = "day",
+       .summary =
+           "reflected light and skylight through a day (--day DAY.json), at keyframes that the eye needs",
+       .emitters = "the sun, the sky and lamps at points in time",
+       .transport = "rays traced once, shared by all times",
+       .receivers = "texels, or pixels of a camera; RGB irradiance",
+       .codec = "keyframes, principal components, quantized",
+       .parameters =
+           {{"receivers",
+             Type::kChoice,
+             "atlas",
+             {"atlas", "cube", "image"},
+             "who receives light: all texels; the faces of a cube about a camera that turns; the pixels of "
+             "one "
+             "that stands still"},
+            {"camera", Type::kCount, "0", {}, "receivers=cube and image: which of the scene's cameras"},
+            {"width", Type::kCount, "auto", {}, "receivers=cube and image: pixels; auto: 512 and 800"},
+            {"height", Type::kCount, "600", {}, "receivers=image: pixels"},
+            {"rays", Type::kCount, "auto", {}, "of a texel; auto: 64, 256, 512, 1024 by quality"},
+            {"every",
+             Type::kLength,
+             "auto",
+             {},
+             "minutes between frames, all of which are kept; auto: keyframes are chosen"},
+            {"shortest", Type::kLength, "1", {}, "minutes below which an interval is not halved"},
+            {"metric",
+             Type::kChoice,
+             "yee",
+             {"yee", "flip"},
+             "what tells whether an interpolated frame is visibly wrong"},
+            {"unseen",
+             Type::kShare,
+             "auto",
+             {},
+             "share of the pixels that may differ while pictures pass for equal; auto: 100 in 800 x 600"},
+            {"error",
+             Type::kChoice,
+             "visible",
+             {"visible", "none"},
+             "how many components are kept: so many that no pixel is visibly wrong; none: all"},
+            {"components", Type::kCount, "auto", {}, "so many instead"},
+            kMaterials},
+       .prepare_whole = prepareDay},
   };
 }
 

@@ -33,19 +33,21 @@ double worst(const TimeSeries& series, const std::vector<float>& data) {
   return most;
 }
 
-// Half a step for each image and the mean's own rounding; nothing else is lost with as many images as there
-// are.
+// Half a step for each image and the mean's own rounding (half floats); nothing else is lost with as many
+// images as there are.
 TEST(TimeSeries, IsExactToItsSteps) {
   const std::vector<float> data = threeImages();
   const Pca pca = codec::pca(data, kFrames, kValues, {.rank = 8});
   EXPECT_LT(pca.error(3), 1e-9 * pca.error(0)) << "made of three images";
   for (const float step : {0.0f, 0.01f, 0.05f}) {
     const TimeSeries series = encodeTimeSeries(pca, 3, step);
-    double allowed = 0.5 * static_cast<double>(series.mean_step) + 1e-5;
+    double allowed = 2.0 * 0x1p-10 + 1e-5;  // the mean is below 4
     for (const float s : series.step) allowed += 0.5 * static_cast<double>(s);
     const double off = worst(series, data);
     EXPECT_LE(off, allowed) << step;
-    EXPECT_GT(off, 0.1 * allowed) << step;
+    if (step > 0) {
+      EXPECT_GT(off, 0.2 * static_cast<double>(step));
+    }
     for (const float w : series.weights) EXPECT_LE(std::abs(w), 1.0f);
   }
   EXPECT_GT(worst(encodeTimeSeries(pca, 1, 0), data), 5 * worst(encodeTimeSeries(pca, 3, 0), data));
@@ -75,7 +77,7 @@ TEST(TimeSeries, OneFrameIsItsMean) {
   const TimeSeries series = encodeTimeSeries(codec::pca(data, 1, 10, {.rank = 4}), 0, 0.1f);
   std::vector<float> out(10);
   series.frame(0, out);
-  for (const float v : out) EXPECT_FLOAT_EQ(v, 0.7f);
+  for (const float v : out) EXPECT_NEAR(v, 0.7f, 0.7f * 0x1p-11f);
 }
 
 }  // namespace

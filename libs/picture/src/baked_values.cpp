@@ -86,7 +86,7 @@ void requireMatch(const scene::Scene& scene, const asset::AtlasTable& atlas) {
 }  // namespace
 
 bool isTransfer(const asset::Layer& layer) {
-  return layer.kind == "lightpath" || layer.kind == "lightgroups";
+  return layer.kind == "lightpath" || layer.kind == "lightgroups" || layer.kind == "day";
 }
 
 const asset::Plane& obscurancePlane(const asset::Asset& asset, const std::string& name) {

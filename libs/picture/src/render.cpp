@@ -94,7 +94,8 @@ class BlockRenderer {
     std::array<Vec3, kPacket> colours;
     std::size_t count = 0;
     for (std::size_t i = 0; i < kPacket; ++i) {
-      solid_[i] = options_.background;
+      solid_[i] = options_.environment.dark() ? options_.background
+                                              : options_.environment.from(rays_[i].direction).rgb;
       if (!hits_[i]) continue;
       points[count] = {hits_[i].where, -rays_[i].direction, pixel_[i], sample};
       ray_of[count++] = i;

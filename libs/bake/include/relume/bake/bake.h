@@ -12,6 +12,7 @@
 #include "relume/atlas/atlas.h"
 #include "relume/bake/layer_spec.h"
 #include "relume/bake/quality.h"
+#include "relume/bake/registry.h"
 #include "relume/bake/report.h"
 #include "relume/bake/statistics.h"
 #include "relume/core/error.h"
@@ -30,6 +31,7 @@ struct BakeOptions {
   atlas::AtlasOptions atlas;
   std::optional<LightSet> lights;  ///< instead of the document's
   std::optional<scene::Environment> environment;
+  DayPlan day;  ///< of layers of kind day
   std::uint64_t seed = 1;
   std::string isa;               ///< see trace::TracerOptions
   std::filesystem::path cache;   ///< folder for finished and interrupted work; empty: none

@@ -13,6 +13,7 @@
 #include "relume/atlas/texels.h"
 #include "relume/bake/layer_spec.h"
 #include "relume/bake/quality.h"
+#include "relume/core/day.h"
 #include "relume/core/hash.h"
 #include "relume/core/progress.h"
 #include "relume/trace/tracer.h"
@@ -29,6 +30,12 @@ struct ParameterSpec {
   std::string help;                  ///< one line, with the unit
 };
 
+/// The day that a layer of kind `day` is lit by.
+struct DayPlan {
+  Day day;
+  std::string text = "{}";  ///< the same as JSON, which the file keeps (docs/command-line.md, DAY.json)
+};
+
 /// What a row may use to compute its texels.
 struct LayerContext {
   const trace::Tracer& tracer;
@@ -37,6 +44,7 @@ struct LayerContext {
   const asset::AtlasTable& table;  ///< the texels as the file keeps them
   QualitySettings quality;
   std::uint64_t seed = 1;
+  DayPlan day = {};
 };
 
 /// A computation in which every texel stands alone: its row of floats depends on nothing farther away than

@@ -3,9 +3,9 @@
 // on:
 //   [BDPTM] Bahnsen et al. Realtime global illumination using compressed pre-computed indirect illumination
 //   textures. Section 3.2: PCA of the frames.
-// Images are kept in 8 bits of one common step, so that those that hardly matter hold small numbers, which
-// compress well; the mean in 16 bits. Weights are at most 1, so that an image is off by half a step at most
-// in any frame.
+// Images are kept in whole steps, all of the same size, so that those that hardly matter hold small numbers,
+// which compress well; the mean in half floats. Weights are at most 1, so that an image is off by half a step
+// at most in any frame.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,11 +18,11 @@ namespace relume::codec {
 
 struct TimeSeries {
   std::size_t frames = 0, values = 0, rank = 0;
-  float mean_lo = 0, mean_step = 0;
-  std::vector<std::uint16_t> mean;  ///< shape [values]: lo + step * q
-  std::vector<float> step;          ///< shape [rank]
-  std::vector<std::int8_t> images;  ///< shape [rank][values]: step * q
-  std::vector<float> weights;       ///< shape [frames][rank], in [-1, 1]
+  float mean_scale = 1;
+  std::vector<std::uint16_t> mean;   ///< shape [values]: half floats, to be multiplied by mean_scale
+  std::vector<float> step;           ///< shape [rank]
+  std::vector<std::int16_t> images;  ///< shape [rank][values]: step * q
+  std::vector<float> weights;        ///< shape [frames][rank], in [-1, 1]
 
   /// out: [values]; sum over frames of gain times frame. gains: [frames]
   void blend(std::span<const float> gains, std::span<float> out) const;
@@ -30,8 +30,8 @@ struct TimeSeries {
   void frame(std::size_t index, std::span<float> out) const;
 };
 
-/// The first `rank` components of a PCA of frames (rows). `step`: the finest an image is kept in; coarser
-/// where 8 bits do not hold it.
+/// The first `rank` components of a PCA of frames (rows). `step`: of the images; larger where 16 bits do not
+/// hold them.
 TimeSeries encodeTimeSeries(const Pca& pca, std::size_t rank, float step);
 
 }  // namespace relume::codec

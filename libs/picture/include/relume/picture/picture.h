@@ -9,6 +9,7 @@
 #include "relume/core/light.h"
 #include "relume/core/progress.h"
 #include "relume/image/image.h"
+#include "relume/scene/environment.h"
 #include "relume/scene/scene.h"
 #include "relume/trace/tracer.h"
 
@@ -59,8 +60,9 @@ struct PictureOptions {
   std::string layer;        ///< name of the layer to show; empty: the first that fits the view
   Irradiance ambient{kPi};  ///< I_A; pi makes an unoccluded white surface radiance 1
   float beta = 0.1f;
-  LightSet lights;        ///< world space
-  Vec3 background{0.0f};  ///< linear
+  LightSet lights;                 ///< world space
+  Vec3 background{0.0f};           ///< linear
+  scene::Environment environment;  ///< seen instead of the background, where it is not dark
   Gloss gloss = Gloss::kGgx;
   /// Of kRelit and kIndirect, [LPM] section 10 with W an obscurance or spectral layer:
   /// indirect light becomes I (1 - obscurance + obscurance W) + bounce W E, E the direct irradiance.
