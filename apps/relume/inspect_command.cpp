@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "day_inspection.h"
+#include "files.h"
 #include "relume/asset/asset.h"
 #include "relume/core/error.h"
 #include "relume/core/file.h"
@@ -21,7 +23,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
-  std::string asset;
+  std::string asset, plots;
   bool json = false;
 };
 
@@ -84,6 +86,7 @@ Json describe(const asset::Asset& asset, std::size_t file_bytes) {
                {"samples", layer.samples},     {"error_estimate", layer.error_estimate}};
     for (const auto& [key, value] : layer.parameters) entry["parameters"][key] = describe(value);
     for (const asset::Plane& plane : layer.planes) entry["planes"].push_back(describe(plane));
+    if (layer.kind == "day") entry["day"] = describeDay(asset::dayFramesOf(layer, asset.atlas));
     out["layers"].push_back(std::move(entry));
   }
   return out;
@@ -94,7 +97,7 @@ std::string textOf(const Json& parameter) {
   return parameter.is_string() ? parameter.get<std::string>() : parameter.dump();
 }
 
-void printTable(const std::string& path, const Json& d) {
+void printTable(const std::string& path, const Json& d, const asset::Asset& asset) {
   const Json& atlas = d["atlas"];
   fmt::print("{}: {}, baked by {}\n", path, formatSize(d["file_bytes"].get<std::size_t>()),
              d["generator"].get<std::string>());
@@ -119,19 +122,26 @@ void printTable(const std::string& path, const Json& d) {
                  plane["name"].get<std::string>(), plane["channels"].get<int>(),
                  plane["channels"].get<int>() == 1 ? "" : "s", plane["mean"].get<double>(),
                  plane["min"].get<double>(), plane["max"].get<double>());
+    const asset::Layer& own = asset.layer(layer["name"].get<std::string>());
+    if (own.kind == "day") printDay(asset::dayFramesOf(own, asset.atlas));
   }
 }
 
 void inspect(const InspectOptions& options, Progress&) {
   const auto bytes = readFile(options.asset);
-  Json description = describe(asset::decode(bytes, options.asset), bytes.size());
+  const asset::Asset asset = asset::decode(bytes, options.asset);
+  Json description = describe(asset, bytes.size());
   const fs::path path = options.asset;
   addSizes(description,
            scene::gltf::Document::parse(bytes, path.filename().string(), path.parent_path()).json());
   if (options.json)
     fmt::print("{}\n", description.dump(2));
   else
-    printTable(options.asset, description);
+    printTable(options.asset, description, asset);
+  if (options.plots.empty()) return;
+  makeFolder(options.plots);
+  for (const asset::Layer& layer : asset.layers)
+    if (layer.kind == "day") plotDay(asset::dayFramesOf(layer, asset.atlas), layer.name, options.plots);
 }
 
 }  // namespace
@@ -143,6 +153,8 @@ void addInspect(CLI::App& app, Program& program) {
                                          "sizes.\nExample: relume inspect castle.baked.glb");
   command->add_option("ASSET", options->asset, "a baked .glb")->required();
   command->add_flag("--json", options->json, "print JSON");
+  command->add_option("--plots", options->plots,
+                      "folder for plots of layers `day`: intervals through the day, variance of components");
   onCommand(command, program, options, inspect);
 }
 

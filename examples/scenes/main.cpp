@@ -18,7 +18,7 @@ using namespace relume::scenes;
 constexpr const char* kUsage =
     "usage: make_scenes OUT_DIR [--scene NAME] [--detail N]\n"
     "  --scene NAME  cornell, hall, halls, temple, car, rooms, crossing, lampshade, furniture, "
-    "glossy_room, courtyard or vase; default: all\n"
+    "glossy_room, courtyard, vase or day_hall; default: all\n"
     "  --detail N    tessellation, 1 to 16; default 2. make_scenes . --scene temple --detail 6 has 106,000 "
     "triangles\n";
 

@@ -9,7 +9,8 @@ std::span<const SceneEntry> allScenes() {
                                            {"halls", makeHalls},         {"rooms", makeRooms},
                                            {"crossing", makeCrossing},   {"lampshade", makeLampshade},
                                            {"furniture", makeFurniture}, {"glossy_room", makeGlossyRoom},
-                                           {"courtyard", makeCourtyard}, {"vase", makeVase}};
+                                           {"courtyard", makeCourtyard}, {"vase", makeVase},
+                                           {"day_hall", makeDayHall}};
   return kScenes;
 }
 

@@ -15,6 +15,8 @@ inline constexpr int kLargestDetail = 16;
 GlbScene makeCornell(int detail);
 /// A castle hall of three rib-vaulted naves.
 GlbScene makeHall(int detail);
+/// A hall with windows and lamp posts (docs/day.md).
+GlbScene makeDayHall(int detail);
 /// Two halls and a doorway between them.
 GlbScene makeHalls(int detail);
 /// A Doric temple.

@@ -12,6 +12,7 @@ namespace relume::scene {
 namespace {
 
 constexpr double kLowestSun = 2;  // degrees: the sky model is no good below
+constexpr float kGround = 0.15f;  // albedo of what lies below the horizon
 constexpr double kBlueHour = -6;  // degrees: all of the sky is of one colour
 
 /// Lux on a horizontal plane.
@@ -46,6 +47,11 @@ Environment skyAt(const Day& day, double minutes, int height) {
   const auto scale = static_cast<float>(lux / horizontalLight(sky));
   for (int y = 0; y < height / 2; ++y)
     for (int x = 0; x < sky.width; ++x) sky.setRgb(x, y, glm::mix(scale * sky.rgb(x, y), mean, even));
+  Vec3 onto_ground = kPi * mean;
+  if (const auto light = day.sunLightAt(minutes))
+    onto_ground += light->colour * (light->intensity * std::max(-light->direction.y, 0.0f));
+  for (int y = height / 2; y < height; ++y)
+    for (int x = 0; x < sky.width; ++x) sky.setRgb(x, y, onto_ground * (kGround * kInvPi));
   environment.radiance = Radiance(1.0f);
   environment.map = std::make_shared<const image::Image>(std::move(sky));
   return environment;

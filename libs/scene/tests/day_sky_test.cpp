@@ -44,6 +44,17 @@ TEST(DaySky, IsBrightestNearTheSunAndEvenAtNight) {
   EXPECT_TRUE(skyAt(winter, 720).dark());
 }
 
+// A share of 0.15 of what falls on it from the sky and the sun, from all its directions alike.
+TEST(DaySky, HasGroundBelowTheHorizon) {
+  const Day day;
+  const double noon = 11.4 * 60;
+  const auto sun = day.sunLightAt(noon);
+  const double onto = skyIlluminance(day.sunAt(noon).elevation_deg) +
+                      static_cast<double>(luminance(sun->colour) * sun->intensity * -sun->direction.y);
+  const double up = static_cast<double>(luminance(skyAt(day, noon).from({0.3f, -0.9f, 0.3f}).rgb));
+  EXPECT_NEAR(up, 0.15 * onto / M_PI, 0.01 * up);
+}
+
 TEST(DaySky, LightsAScene) {
   Scene scene;
   Material lamp;

@@ -10,7 +10,8 @@ namespace relume::scene {
 /// The sky without the sun, in the day's units: its horizontal illuminance is Day::scale times skyIlluminance
 /// (core/daylight.h). Sky::kModel: distributed as skyImage has it; from the time when the sun is 2 degrees
 /// high its shape stays as it is then, turning blue and even until the sun is 6 degrees below the horizon.
-/// Sky::kConstant: Day::meanSkyAt from all around. Dark without a sky, and by night.
+/// Below the horizon lies ground of albedo 0.15 in that light and the sun's. Sky::kConstant: Day::meanSkyAt
+/// from all around. Dark without a sky, and by night.
 Environment skyAt(const Day& day, double minutes, int height = 64);
 
 /// Gives the scene the lights, the emission and the sky of that time.
