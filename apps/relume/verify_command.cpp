@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "command.h"
+#include "day_verification.h"
 #include "files.h"
 #include "lightmap_comparison.h"
 #include "reference_picture.h"
@@ -24,7 +25,7 @@ namespace {
 struct VerifyCommandOptions {
   std::string asset, lights, json, report, size = "480x270";
   VerifyOptions verify;
-  std::uint32_t lamps = 20;
+  std::uint32_t lamps = 20, times = 20;
   bool near = false;
   ViewOptions views;
 };
@@ -66,10 +67,28 @@ bool comparesTransfer(const asset::Asset& asset, const std::string& layer) {
   return is("lightpath") && !is("lightmap");
 }
 
+/// Likewise a day.
+bool comparesDay(const asset::Asset& asset, const std::string& layer) {
+  if (!layer.empty()) return asset.layer(layer).kind == "day";
+  return std::all_of(asset.layers.begin(), asset.layers.end(),
+                     [](const asset::Layer& l) { return l.kind != "lightmap" && l.kind != "lightpath"; }) &&
+         std::any_of(asset.layers.begin(), asset.layers.end(),
+                     [](const asset::Layer& l) { return l.kind == "day"; });
+}
+
 /// Numbers printed, and what a report shows.
 Comparison verified(const VerifyCommandOptions& options, Opened& opened, const ViewOptions& views,
                     bool pictures, Progress& progress) {
   const asset::Asset& asset = *opened.asset;
+  if (comparesDay(asset, options.verify.layer)) {
+    if (pictures)
+      throw Error(ErrorCode::kUsage, "--output", "shows no day yet", "leave it out, or give --json");
+    const DayVerification v = verifyDay(opened.scene, asset, options.verify, options.times, progress);
+    print(v);
+    Comparison numbers;
+    numbers.numbers = toJson(v);
+    return numbers;
+  }
   if (comparesTransfer(asset, options.verify.layer)) {
     const RelitVerification v =
         verifyRelit(opened.scene, asset, options.verify, options.lamps, options.near, progress);
@@ -128,6 +147,9 @@ void addVerify(CLI::App& app, Program& program) {
       ->check(CLI::Range(32u, 1u << 24))
       ->capture_default_str();
   command->add_option("--lamps", options->lamps, "random lamps to judge a lightpath by")
+      ->check(CLI::Range(1u, 10'000u))
+      ->capture_default_str();
+  command->add_option("--times", options->times, "random times to judge a day at")
       ->check(CLI::Range(1u, 10'000u))
       ->capture_default_str();
   command->add_flag("--near", options->near, "lamps nearer to a surface than an entry is wide");

@@ -58,6 +58,15 @@ class DayTest(test_cli.CliTest):
                 truth = self.picture("truth", "--mode", "reference", "--time", time, "--materials", "lambert", "--spp", 1024)
                 self.assertLess(self.difference(relit, truth), 0.06)
 
+    def test_verify_judges_random_times(self):
+        self.bake_day()
+        path = self.folder / "verified.json"
+        said = relume("verify", self.baked, "--times", 6, "--points", 200, "--spp", 2048, "--json", path).stdout
+        self.assertIn("6 random times", said)
+        numbers = json.loads(path.read_text())
+        self.assertEqual(len(numbers["times"]), 6)
+        self.assertLess(numbers["median"], 0.12)
+
     def test_keyframes_are_where_light_changes(self):
         self.bake_day()
         layer = self.inspected()
