@@ -50,6 +50,11 @@ class DayTest(test_cli.CliTest):
     def inspected(self, asset=None):
         return json.loads(relume("inspect", asset or self.baked, "--json").stdout)["layers"][0]
 
+    def test_a_sound_day_has_no_warnings(self):
+        said = relume("bake", self.room, "-o", self.baked, "--day", self.day, "--layer", "day", *SMALL, "--no-cache")
+        self.assertNotIn("differ visibly", said.stderr + said.stdout)
+        self.assertEqual(self.inspected()["parameters"]["visible_keyframes"], 0)
+
     def test_any_minute_is_what_path_tracing_finds(self):
         self.bake_day()
         for time in ("09:10", "12:07", "15:40", "20:00"):

@@ -109,6 +109,7 @@ BakeResult bake(const scene::gltf::Document& document, const BakeOptions& option
     input.add(baked.key);
     statistics.rays += baked.numbers.samples, tracing_seconds += baked.numbers.seconds;
     for (std::size_t i = 0; i < baked.valid.size(); ++i) asset.atlas.valid[i] &= baked.valid[i];
+    result.warnings.insert(result.warnings.end(), baked.warnings.begin(), baked.warnings.end());
     asset.layers.push_back(std::move(baked.layer));
     statistics.layers.push_back(std::move(baked.numbers));
   }

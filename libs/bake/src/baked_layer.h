@@ -16,6 +16,7 @@ struct BakedLayer {
   LayerStatistics numbers;          ///< but for `bytes`
   Digest key;                       ///< of all that the layer depends on besides structure and placements
   std::vector<std::uint8_t> valid;  ///< by covered texel, 0: buried in geometry; empty: not known
+  Warnings warnings = {};
 };
 
 /// What every layer of a bake shares. References are kept.

@@ -32,7 +32,8 @@ using Kind = asset::DayFrames::Receivers;
 using Frame = std::vector<Vec3>;
 
 constexpr std::size_t kMostComponents = 96;  // that are looked at
-constexpr double kNoVariance = 1e-9;         // of all: what components leave that is not worth one more
+constexpr const char* kVisibleKeyframes = "visible_keyframes";
+constexpr double kNoVariance = 1e-9;  // of all: what components leave that is not worth one more
 // Of an eigen-image, in the light that the eye adapts to, where a mid grey is 0.18 pi / albedo.
 constexpr float kStep = 0.01f;
 // Likewise, and far beyond what a display shows: beside a flame in the dark there is more, which would take
@@ -137,7 +138,7 @@ Digest keyOf(const LayerContext& context, const DayOptions& o) {
   Hasher hasher;
   addLightsAndNormals(hasher, context.tracer.scene());
   return hasher
-      .add(std::string_view("day 1"))  // raise when results change
+      .add(std::string_view("day 2"))  // raise when results change
       .add(std::string_view(context.day.text))
       .add(o.shape.receivers)
       .add(o.shape.width)
@@ -247,7 +248,8 @@ class DayBaker {
     const std::vector<double> times = chooseTimes();
     asset::DayFrames frames = options_.shape;
     frames.minutes = times;
-    const std::vector<float> data = framesAt(times, frames.gain);
+    std::vector<float> data = framesAt(times, frames.gain);
+    if (options_.shape.receivers == Kind::kAtlas) stitch(data);
     encode(data, frames);
     WholeLayer solved;
     solved.layer.tables = asset::tablesOf(frames);
@@ -259,6 +261,7 @@ class DayBaker {
     told["keyframes"] = static_cast<double>(times.size());
     told["frames_baked"] = static_cast<double>(light_.frames());
     told["kept_components"] = static_cast<double>(frames.series.rank);
+    told[kVisibleKeyframes] = visible_;
     return solved;
   }
 
@@ -333,13 +336,12 @@ class DayBaker {
     const double all = pca.error(0);
     for (const double v : pca.variance) frames.variance.push_back(static_cast<float>(all > 0 ? v / all : 0));
     while (pca.rank > 0 && pca.error(pca.rank - 1) < kNoVariance * all) dropLast(pca);
-    if (options_.shape.receivers == Kind::kAtlas) stitch(pca);
     if (options_.components > 0 || options_.all_components) {
       const std::size_t rank = options_.components > 0 ? std::min(options_.components, pca.rank) : pca.rank;
       frames.series = codec::encodeTimeSeries(pca, rank, kStep);
       return;
     }
-    frames.series = fewestComponents(pca, frames.gain);
+    frames.series = fewestComponents(pca, data, frames.gain);
   }
 
   static void dropLast(codec::Pca& pca) {
@@ -350,9 +352,8 @@ class DayBaker {
     pca.rank = rank;
   }
 
-  /// What texels buried in geometry hold, and what the two sides of seams differ by, in the mean and in all
-  /// images.
-  void stitch(codec::Pca& pca) {
+  /// What texels buried in geometry hold, and what the two sides of seams differ by, in all frames.
+  void stitch(std::span<float> data) {
     const std::vector<atlas::SeamSample> seams =
         atlas::findSeams(context_.tracer.scene(), context_.atlas, progress_);
     const auto finish = [&](std::span<float> values) {
@@ -362,42 +363,61 @@ class DayBaker {
       for (std::size_t i = 0; i < context_.texels.points.size(); ++i)
         std::copy_n(&plane.values[std::size_t{context_.texels.points[i].texel} * 3], 3, &values[3 * i]);
     };
-    finish(pca.mean);
-    for (std::size_t c = 0; c < pca.rank; ++c)
-      finish(std::span(pca.components).subspan(c * pca.columns, pca.columns));
+    const std::size_t values = receivers_.size() * 3;
+    for (std::size_t at = 0; at < data.size(); at += values) finish(data.subspan(at, values));
   }
 
   /// The fewest that leave no frame visibly different; with a finer step where all of them do not.
-  codec::TimeSeries fewestComponents(const codec::Pca& pca, std::span<const float> gain) const {
+  codec::TimeSeries fewestComponents(const codec::Pca& pca, std::span<const float> data,
+                                     std::span<const float> gain) {
     constexpr int kHalvings = 4;
     float step = kStep;
-    for (int h = 0; h < kHalvings; ++h, step /= 2) {
-      if (!anyVisible(pca, codec::encodeTimeSeries(pca, pca.rank, step), gain)) break;
+    codec::TimeSeries all;
+    int h = 0;
+    for (; h < kHalvings; ++h, step /= 2) {
+      all = codec::encodeTimeSeries(pca, pca.rank, step);
+      if (!anyVisible(pca, data, all, gain)) break;
+    }
+    if (h == kHalvings) {  // no fewer would do better
+      visible_ = static_cast<double>(howManyVisible(pca, data, all, gain));
+      return all;
     }
     std::size_t too_few = 0, enough = pca.rank;
-    if (!anyVisible(pca, codec::encodeTimeSeries(pca, 0, step), gain))
+    if (!anyVisible(pca, data, codec::encodeTimeSeries(pca, 0, step), gain))
       return codec::encodeTimeSeries(pca, 0, step);
     while (enough > too_few + 1) {
       const std::size_t middle = (too_few + enough) / 2;
-      (anyVisible(pca, codec::encodeTimeSeries(pca, middle, step), gain) ? too_few : enough) = middle;
+      (anyVisible(pca, data, codec::encodeTimeSeries(pca, middle, step), gain) ? too_few : enough) = middle;
     }
     return codec::encodeTimeSeries(pca, enough, step);
   }
 
-  bool anyVisible(const codec::Pca& pca, const codec::TimeSeries& series, std::span<const float> gain) const {
-    std::vector<float> truth(series.values), kept(series.values);
+  /// Whether keyframe k, against what was baked, shows that it is made of components.
+  auto differs(std::span<const float> data, const codec::TimeSeries& series,
+               std::span<const float> gain) const {
     const auto frameOf = [](std::span<const float> values, float times) {
       Frame frame(values.size() / 3);
       for (std::size_t i = 0; i < frame.size(); ++i)
         frame[i] = times * Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
       return frame;
     };
-    const auto differs = [&](std::size_t k) {
-      pca.reconstruct(k, truth), series.frame(k, kept);
+    return [this, data, &series, gain, frameOf](std::size_t k) {
+      std::vector<float> kept(series.values);
+      series.frame(k, kept);
+      const std::span<const float> truth = data.subspan(k * series.values, series.values);
       return judge_->visible(frameOf(kept, gain[k]), frameOf(truth, gain[k]));
     };
-    std::vector<std::size_t> order = byDoubt(pca, series.rank);
-    return std::any_of(order.begin(), order.end(), differs);
+  }
+
+  bool anyVisible(const codec::Pca& pca, std::span<const float> data, const codec::TimeSeries& series,
+                  std::span<const float> gain) const {
+    const std::vector<std::size_t> order = byDoubt(pca, series.rank);
+    return std::any_of(order.begin(), order.end(), differs(data, series, gain));
+  }
+  std::size_t howManyVisible(const codec::Pca& pca, std::span<const float> data,
+                             const codec::TimeSeries& series, std::span<const float> gain) const {
+    const std::vector<std::size_t> order = byDoubt(pca, series.rank);
+    return static_cast<std::size_t>(std::count_if(order.begin(), order.end(), differs(data, series, gain)));
   }
 
   /// Frames by what these components leave of them, the most first.
@@ -427,7 +447,19 @@ class DayBaker {
   DaySmoothing smoothing_;
   FrameStore store_;
   std::optional<DayJudge> judge_;
+  double visible_ = 0;  // keyframes that no number of components makes right
 };
+
+Warnings warningsOf(const asset::Layer& layer) {
+  const auto found = layer.parameters.find(kVisibleKeyframes);
+  const double* visible = found == layer.parameters.end() ? nullptr : std::get_if<double>(&found->second);
+  if (!visible || *visible == 0) return {};
+  return {
+      {"layer " + layer.name,
+       fmt::format("{} of its keyframes differ visibly from what was baked, with as many as {} components",
+                   *visible, kMostComponents),
+       "take a higher quality, since noise does not compress, or let more pixels differ (unseen=)"}};
+}
 
 /// From the transport of a quarter of the rays, and one frame.
 double forecastDay(const LayerContext& context, DayOptions options, Progress& progress) {
@@ -457,7 +489,8 @@ WholeJob prepareDay(const LayerContext& context, const Parameters& parameters) {
           [&table](const asset::Layer& layer) {
             const asset::DayFrames frames = asset::dayFramesOf(layer, table);
             return std::uint64_t{4} * frames.series.frames * frames.series.values;
-          }};
+          },
+      .warnings = warningsOf};
 }
 
 }  // namespace relume::bake

@@ -83,6 +83,7 @@ BakedLayer bakeWhole(const LayerTask& task, Progress& progress) {
   baked.layer.samples = found.samples;
   baked.layer.error_estimate = baked.numbers.error_estimate = found.error_estimate;
   baked.numbers.raw_bytes = job.raw_bytes(baked.layer);
+  if (job.warnings) baked.warnings = job.warnings(baked.layer);
   baked.numbers.seconds = task.stopwatch.lap(prepared.name);
   obeyMemoryLimit(task.options.max_memory);
   return baked;

@@ -94,6 +94,8 @@ struct WholeJob {
   std::function<double(Progress&)> forecast;  ///< seconds that solve() will take, about, from a pilot
   /// Of what the layer stands for, as 32-bit floats.
   std::function<std::uint64_t(const asset::Layer&)> raw_bytes;
+  /// What the layer does not hold to of what was asked, also where it comes from the cache; empty: it does.
+  std::function<Warnings(const asset::Layer&)> warnings = {};
 };
 
 struct LayerKind {
