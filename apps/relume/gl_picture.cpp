@@ -125,33 +125,71 @@ void addObjects(render::Renderer& renderer, const scene::Scene& scene, const ass
               "bake lightpath:exits=probes, or take --object-light cube");
 }
 
+namespace {
+
+/// A renderer with all that the options say but where from and under which lights.
+class Prepared {
+ public:
+  Prepared(const scene::Scene& scene, const asset::Asset* asset, const picture::PictureOptions& options,
+           const GlExtras& extras)
+      : renderer(scene, kFineShadows) {
+    showOnAtlas(renderer, scene, asset, options.view, options.layer);
+    addObjects(renderer, scene, asset, extras.objects, extras.object_light);
+    frame.object_light = extras.object_light;
+    frame.size = {options.width, options.height};
+    frame.view = viewFor(options.view);
+    frame.ambient = options.ambient;
+    frame.beta = options.beta;
+    frame.background = options.background;
+    frame.gloss = options.gloss == picture::Gloss::kNone    ? render::Gloss::kNone
+                  : options.gloss == picture::Gloss::kPhong ? render::Gloss::kPhong
+                                                            : render::Gloss::kGgx;
+    frame.full_materials = extras.full_materials;
+    frame.relief_steps = extras.relief_steps, frame.relief_shadows = extras.relief_shadows;
+    frame.small_scale_gain = extras.small_scale;
+    if (asset && picture::weightsByObscurance(options)) {
+      renderer.setObscurance(asset->atlas, picture::obscurancePlane(*asset, options.obscurance_layer));
+      frame.obscurance_gain = options.obscurance, frame.bounce_gain = options.bounce;
+    }
+    shows_lights_ = options.view == picture::View::kLit || showsTransfer(options.view);
+    samples_ = options.samples;
+  }
+  image::Image picture(const picture::Viewpoint& viewpoint, const LightSet& lights) {
+    frame.camera = cameraOf(viewpoint);
+    if (shows_lights_) frame.lights = lights;
+    return renderer.picture(frame, samples_);
+  }
+
+  render::Renderer renderer;
+  render::FrameSettings frame;
+
+ private:
+  bool shows_lights_ = false;
+  int samples_ = 1;
+};
+
+}  // namespace
+
 image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,
                        const picture::Viewpoint& viewpoint, const picture::PictureOptions& options,
                        const GlExtras& extras) {
   const render::HeadlessContext context;
-  render::Renderer renderer(scene, kFineShadows);
-  showOnAtlas(renderer, scene, asset, options.view, options.layer);
-  addObjects(renderer, scene, asset, extras.objects, extras.object_light);
-  render::FrameSettings frame;
-  frame.object_light = extras.object_light;
-  frame.size = {options.width, options.height};
-  frame.camera = cameraOf(viewpoint);
-  frame.view = viewFor(options.view);
-  if (options.view == picture::View::kLit || showsTransfer(options.view)) frame.lights = options.lights;
-  frame.ambient = options.ambient;
-  frame.beta = options.beta;
-  frame.background = options.background;
-  frame.gloss = options.gloss == picture::Gloss::kNone    ? render::Gloss::kNone
-                : options.gloss == picture::Gloss::kPhong ? render::Gloss::kPhong
-                                                          : render::Gloss::kGgx;
-  frame.full_materials = extras.full_materials;
-  frame.relief_steps = extras.relief_steps, frame.relief_shadows = extras.relief_shadows;
-  frame.small_scale_gain = extras.small_scale;
-  if (asset && picture::weightsByObscurance(options)) {
-    renderer.setObscurance(asset->atlas, picture::obscurancePlane(*asset, options.obscurance_layer));
-    frame.obscurance_gain = options.obscurance, frame.bounce_gain = options.bounce;
+  return Prepared(scene, asset, options, extras).picture(viewpoint, options.lights);
+}
+
+void glPictures(const scene::Scene& scene, const asset::Asset* asset, const std::vector<PathFrame>& path,
+                const picture::PictureOptions& options, const GlExtras& extras,
+                const std::function<void(std::size_t, const image::Image&)>& take) {
+  const render::HeadlessContext context;
+  Prepared prepared(scene, asset, options, extras);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    for (std::size_t k = 0; k < std::min(path[i].moved.size(), extras.objects.size()); ++k) {
+      Mat4 place(1);
+      place[3] = Vec4(path[i].moved[k], 1);
+      prepared.renderer.placeObject(k, place);
+    }
+    take(i, prepared.picture(path[i].viewpoint, path[i].lights));
   }
-  return renderer.picture(frame, options.samples);
 }
 
 }  // namespace relume::app

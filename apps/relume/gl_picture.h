@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Pictures by OpenGL: what `relume render --renderer gl` does instead of rays.
 #pragma once
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "files.h"
 #include "objects.h"
+#include "recorded_path.h"
 #include "relume/picture/picture.h"
 #include "relume/render/renderer.h"
 
@@ -41,6 +44,11 @@ bool isProbeLayer(const asset::Layer& layer);
 /// kNoSuchLayer without probes.
 void addObjects(render::Renderer& renderer, const scene::Scene& scene, const asset::Asset* asset,
                 const std::vector<Group>& groups, render::ObjectLight light);
+
+/// Pictures of a recorded path, one after the other, each handed to `take` with its number from 0 on.
+void glPictures(const scene::Scene& scene, const asset::Asset* asset, const std::vector<PathFrame>& path,
+                const picture::PictureOptions& options, const GlExtras& extras,
+                const std::function<void(std::size_t, const image::Image&)>& take);
 
 /// The picture that picture::render makes, without a window, and with extras. Throws as picture::render, and
 /// Error kUnsupported where there is no OpenGL.

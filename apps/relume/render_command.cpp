@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
 
 #include "command.h"
@@ -40,6 +41,7 @@ struct RenderOptions {
   std::uint64_t seed = 1;
   std::string obscurance_layer;
   std::vector<std::string> objects;
+  std::string path;
   std::string object_light = "cube";
   std::vector<std::string> relief{"steps", "shadows", "occlusion"};
   float fov_deg = 50, beta = 0.1f, obscurance = 0, bounce = 0;
@@ -177,6 +179,24 @@ GlExtras extrasOf(const RenderOptions& options, const std::vector<Group>& object
           .object_light = objectLightOf(options.object_light)};
 }
 
+/// "walk.png" to "walk-00001.png" and so on. One exposure for all, or frames would flicker.
+void renderPath(const RenderOptions& options, const Opened& opened, const picture::PictureOptions& picture,
+                const GlExtras& extras) {
+  const std::vector<PathFrame> path = parsePath(readTextFile(options.path), options.path);
+  const std::filesystem::path output = options.output;
+  RenderOptions each = options;
+  glPictures(opened.scene, opened.asset ? &*opened.asset : nullptr, path, picture, extras,
+             [&](std::size_t i, const image::Image& linear) {
+               if (i == 0 && !options.exposure && isLit(picture.view))
+                 each.exposure = chooseExposure(linear, picture.background, !options.mode.empty());
+               each.output = (output.parent_path() / fmt::format("{}-{:05}{}", output.stem().string(), i + 1,
+                                                                 output.extension().string()))
+                                 .string();
+               writePicture(each, linear, picture.view, picture.background);
+             });
+  fmt::print("{} pictures\n", path.size());
+}
+
 void renderPicture(const RenderOptions& options, Progress& progress) {
   requireWritable(options.output);
   if (options.mode == "reference" || options.mode == "direct") {
@@ -232,6 +252,10 @@ void renderPicture(const RenderOptions& options, Progress& progress) {
   else if (isRelit(picture.view) && !(gl && followsLamps(*opened, picture.layer)))
     relightForPicture(options, picture, *opened);
   const asset::Asset* asset = opened->asset ? &*opened->asset : nullptr;
+  if (!options.path.empty()) {
+    if (!gl) throw Error(ErrorCode::kUsage, "--path", "is drawn by OpenGL", "add --renderer gl");
+    return renderPath(options, *opened, picture, extrasOf(options, objects));
+  }
   image::Image linear = gl ? glPicture(opened->scene, asset, viewpoint, picture, extrasOf(options, objects))
                            : picture::render(tracer, asset, viewpoint, picture, progress);
   if (pixels) addPixelLight(tracer, *asset, *day, *minutesOf(options), viewpoint, picture, linear, progress);
@@ -340,6 +364,10 @@ void addRender(CLI::App& app, Program& program) {
       "--object", options->objects,
       "repeatable: FILE.glb@x,y,z[,turn[,scale]] puts its origin there, turned by degrees; it was "
       "not there when the scene was baked");
+  command->add_option(
+      "--path", options->path,
+      "with --renderer gl: a path of camera and lamps that relume view recorded; a picture for "
+      "each of its frames, OUT-00001.png and so on");
   command
       ->add_option("--object-light", options->object_light,
                    "with --renderer gl: indirect light on objects: of a cube map about each, of the bake's "

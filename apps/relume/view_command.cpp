@@ -40,6 +40,14 @@ void addView(CLI::App& app, Program& program) {
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
   command->add_option("--screenshot", options->viewer.screenshot, "with --frames: the last one, to .png");
+  command->add_option("--record", options->viewer.record,
+                      "with --frames: their path of camera and lamps, to .json");
+  command
+      ->add_option(
+          "--show", options->viewer.show,
+          "from the start: split, entries, truth, help, as by their keys; panels: on the screenshot too")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"split", "entries", "truth", "help", "panels"}));
   command->add_flag("--sweep", options->viewer.sweep, "with --frames: the first lamp moves to and fro");
   onCommand(command, program, options, [](const Options& o, Progress&) {
     ViewerOptions viewer = o.viewer;

@@ -47,6 +47,40 @@ class View(test_cli.CliTest):
         self.assertLess(json.loads(relume("compare", pictures[1], again, "--metric", "flip", "--json").stdout)["mean"], 0.002)
 
     @unittest.skipUnless(shutil.which("xvfb-run"), "no xvfb-run: no display to open a window on")
+    def test_a_recorded_path_is_shown_again(self):
+        self.bake("--layer", "obscurance", "--layer", "lightpath:count=64,size=32", "--quality", "draft")
+        path, picture = self.folder / "path.json", self.folder / "last.png"
+        done = in_window(self.baked, "--lights", self.lights, "--frames", 4, "--sweep", "--record", path, "--screenshot", picture, "--size", "320x200")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        recorded = json.loads(path.read_text())["frames"]
+        self.assertEqual(len(recorded), 4)
+        how = ["--renderer", "gl", "--mode", "relit", "--materials", "full", "--size", "320x200", "--spp", 1, "--exposure", 0]
+        relume("render", self.baked, "-o", self.folder / "walk.png", "--path", path, *how)
+        frames = sorted(self.folder.glob("walk-*.png"))
+        self.assertEqual([f.name for f in frames], [f"walk-{i:05}.png" for i in range(1, 5)])
+        # The last one is what the same place and lamps give without a path.
+        one = recorded[-1]
+        self.lights.write_text(json.dumps(one["lights"]))
+        relume("render", self.baked, "-o", picture, "--eye", ",".join(map(str, one["eye"])), "--target", ",".join(map(str, one["target"])), "--fov", one["fov"],
+               "--lights", self.lights, *how)
+        flip = {f: json.loads(relume("compare", f, picture, "--metric", "flip", "--json").stdout)["mean"] for f in frames}
+        self.assertLess(flip[frames[-1]], 0.002)
+        self.assertGreater(flip[frames[0]], 2 * flip[frames[-1]] + 0.001)
+        path.write_text('{"frames": [{"eye": [0, 0, 0]}]}')
+        self.assertIn("relume view", relume("render", self.baked, "-o", self.folder / "no.png", "--renderer", "gl", "--mode", "relit", "--path", path, expect=1).stderr)
+
+    @unittest.skipUnless(shutil.which("xvfb-run"), "no xvfb-run: no display to open a window on")
+    def test_what_helps_to_understand_a_bake(self):
+        self.bake("--layer", "obscurance", "--layer", "lightpath:count=64,size=32", "--quality", "draft")
+        pictures = {}
+        for show in ("panels", "panels,split", "panels,entries", "panels,truth", "panels,help"):
+            pictures[show] = self.folder / f"{show}.png"
+            done = in_window(self.baked, "--lights", self.lights, "--frames", 2, "--show", show, "--screenshot", pictures[show], "--size", "480x300")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), show)
+            if show != "panels":
+                self.assertGreater(json.loads(relume("compare", pictures["panels"], pictures[show], "--metric", "flip", "--json").stdout)["mean"], 0.0005, show)
+
+    @unittest.skipUnless(shutil.which("xvfb-run"), "no xvfb-run: no display to open a window on")
     def test_a_plain_scene_is_shown_under_its_lamps(self):
         picture = self.folder / "plain.png"
         done = in_window(self.scene, "--frames", 2, "--screenshot", picture, "--size", "320x200")

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
+#include "relume/image/colour.h"
 #include "relume/image/image.h"
 
 namespace relume::app {
@@ -74,6 +76,37 @@ void lightsPanel(Stage& stage) {
   if (any && stage.selected >= 0) lightFields(lights[static_cast<std::size_t>(stage.selected)]);
 }
 
+ImU32 colourOf(const std::string& pass) {
+  const Vec3 c = image::labelColour(static_cast<std::uint32_t>(std::hash<std::string>()(pass) % 97));
+  return ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, 1));
+}
+
+/// A column for each frame, its passes one on top of the other.
+void passGraph(const PanelState& state) {
+  constexpr float kHeight = 70;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  double most = 1e-6;
+  for (const auto& frame : state.pass_times) {
+    double sum = 0;
+    for (const render::PassTime& pass : frame) sum += pass.seconds;
+    most = std::max(most, sum);
+  }
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(at, ImVec2(at.x + width, at.y + kHeight), IM_COL32(20, 20, 20, 255));
+  const float step = width / static_cast<float>(std::max<std::size_t>(state.pass_times.size(), 1));
+  for (std::size_t i = 0; i < state.pass_times.size(); ++i) {
+    float base = at.y + kHeight;
+    for (const render::PassTime& pass : state.pass_times[i]) {
+      const float h = kHeight * static_cast<float>(pass.seconds / most);
+      const float x = at.x + step * static_cast<float>(i);
+      list->AddRectFilled(ImVec2(x, base - h), ImVec2(x + step, base), colourOf(pass.name));
+      base -= h;
+    }
+  }
+  ImGui::Dummy(ImVec2(width, kHeight));
+}
+
 void timesPanel(const Stage& stage, const PanelState& state) {
   const std::vector<float> history(state.frame_ms.begin(), state.frame_ms.end());
   if (history.empty()) return;
@@ -83,11 +116,15 @@ void timesPanel(const Stage& stage, const PanelState& state) {
   const std::string overlay = fmt::format("{:.1f} ms, {:.1f} frames/s", mean, 1000 / mean);
   ImGui::PlotLines("##frames", history.data(), static_cast<int>(history.size()), 0, overlay.c_str(), 0,
                    1.2f * most, ImVec2(ImGui::GetContentRegionAvail().x, 60));
+  passGraph(state);
   double sum = 1e-9;
   for (const render::PassTime& pass : stage.times()) sum += pass.seconds;
-  for (const render::PassTime& pass : stage.times())
+  for (const render::PassTime& pass : stage.times()) {
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, colourOf(pass.name));
     ImGui::ProgressBar(static_cast<float>(pass.seconds / sum), ImVec2(-1, 14),
                        fmt::format("{} {:.2f} ms", pass.name, 1e3 * pass.seconds).c_str());
+    ImGui::PopStyleColor();
+  }
 }
 
 void helpWindow(PanelState& state) {
@@ -106,7 +143,10 @@ void helpWindow(PanelState& state) {
         {"L", "a new lamp in front of the camera"},
         {"Delete", "the chosen lamp"},
         {"P", "screenshot to a PNG file, without panels"},
-        {"R", "record: every frame to a PNG file, until R again"},
+        {"R", "record the path of camera and lamps, until R again; relume render --path shows it"},
+        {"C", "light straight from lamps on the left half, all light on the right one"},
+        {"N", "entries of light, coloured by their cluster"},
+        {"T", "path-traced truth beside, and the difference"},
         {"? or F1", "this page"},
         {"drop a file", "open it"},
         {"Esc", "end"}};
@@ -151,6 +191,10 @@ void drawPanels(Stage& stage, PanelState& state) {
     }
     float ambient = stage.frame.ambient.rgb.x;
     if (ImGui::SliderFloat("ambient", &ambient, 0, 4)) stage.frame.ambient = Irradiance(ambient);
+    if (ImGui::SliderFloat("lamps alone, left", &stage.frame.split, 0, 1) && stage.frame.split < 0.01f)
+      stage.frame.split = 0;
+    if (!stage.entries().empty()) ImGui::Checkbox("entries of light, by cluster", &state.entries);
+    ImGui::Checkbox("beside path-traced truth", &stage.compare_with_truth);
     ImGui::Checkbox("exposure by itself", &stage.auto_exposure);
     ImGui::SliderFloat("exposure, stops", &stage.exposure, -12, 12);
     ImGui::Checkbox("glossy materials, normal maps", &stage.frame.full_materials);
@@ -177,6 +221,19 @@ void drawPanels(Stage& stage, PanelState& state) {
   ImGui::TextDisabled("? for help");
   ImGui::PopItemWidth();
   ImGui::End();
+}
+
+void drawEntries(const Stage& stage, Vec2 size) {
+  const picture::Viewpoint viewpoint = stage.camera.viewpoint();
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  for (const Stage::Entry& entry : stage.entries()) {
+    const Vec3 at = project(viewpoint, size, entry.position);
+    if (!(at.z > 0) || at.x < 0 || at.y < 0 || at.x > size.x || at.y > size.y) continue;
+    if (!stage.sees(entry.position, entry.normal)) continue;
+    const float radius = std::clamp(40.0f / at.z, 2.0f, 8.0f);
+    list->AddCircleFilled(ImVec2(at.x, at.y), radius, shown(entry.colour, 1));
+    list->AddCircle(ImVec2(at.x, at.y), radius, IM_COL32(0, 0, 0, 200));
+  }
 }
 
 bool drawHandles(Stage& stage, Vec2 size) {

@@ -9,6 +9,7 @@
 #include "gl_picture.h"
 #include "lights.h"
 #include "relit.h"
+#include "relume/asset/transfer.h"
 #include "relume/image/colour.h"
 #include "relume/picture/baked_values.h"
 #include "relume/render/context.h"
@@ -21,11 +22,6 @@ using picture::View;
 
 constexpr int kSoftwareShadows = 256, kDeviceShadows = 1024;
 constexpr float kExposureStep = 0.15f;  // of the way, each frame
-
-picture::Viewpoint firstViewpoint(const scene::Scene& scene, int camera, float aspect) {
-  const trace::Tracer tracer(scene, {.isa = "", .include_dynamic = true});
-  return picture::defaultViewpoint(tracer, camera, aspect);
-}
 
 bool has(const asset::Asset* asset, auto fits) {
   return asset && std::any_of(asset->layers.begin(), asset->layers.end(), fits);
@@ -79,7 +75,8 @@ Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
   renderer_ = std::make_unique<render::Renderer>(
       scene, render::ShadowOptions{.cube_size = shadows, .plane_size = 4 * shadows});
   const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
-  camera = CameraControl(firstViewpoint(scene, options.camera, aspect),
+  tracer_ = std::make_unique<trace::Tracer>(scene, trace::TracerOptions{.isa = "", .include_dynamic = true});
+  camera = CameraControl(picture::defaultViewpoint(*tracer_, options.camera, aspect),
                          std::max(0.3f * scene.bounds().diagonal(), 0.1f));
   frame.lights = chooseLights(options.lights, scene);
   frame.background = Vec3(0.05f);
@@ -89,6 +86,7 @@ Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
     for (const asset::Layer& l : asset->layers)
       if (l.kind == "lightpath" && (layer_.empty() || l.name == layer_)) {
         renderer_->setTransfer(*asset, l);
+        readEntries(l);
         break;
       }
   has_obscurance =
@@ -109,6 +107,34 @@ Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
                          frame.lights.size());
   if (!asset) caption_ += "; it carries no bake, so there is no indirect light (relume bake makes it)";
   showView();
+}
+
+void Stage::readEntries(const asset::Layer& layer) {
+  const asset::Transfer transfer = asset::readTransfer(layer, opened_->asset->atlas);
+  const codec::BlockMatrix& m = transfer.matrix;
+  entries_.resize(transfer.entries.size());
+  const std::size_t samples = transfer.entries.position.size() / std::max<std::size_t>(entries_.size(), 1);
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    // The middle one of its points lies on the surface, where their mean may not.
+    entries_[e].position = transfer.entries.position[e * samples + samples / 2];
+    entries_[e].normal = transfer.entries.normal[e * samples + samples / 2];
+  }
+  for (std::size_t c = 0; c < m.clusters(); ++c)
+    for (std::size_t k = m.cluster_first[c]; k < m.cluster_first[c + 1]; ++k)
+      if (m.cluster_column[k] < entries_.size())
+        entries_[m.cluster_column[k]].colour = image::labelColour(static_cast<std::uint32_t>(c));
+}
+
+bool Stage::sees(Point p, Normal n) const {
+  const Point start = p + 0.01f * n;
+  const Vec3 way = camera.eye() - start;
+  const float l = glm::length(way);
+  return l > 0 && glm::dot(way, n) > 0 && !tracer_->occluded({start, way / l, l});
+}
+
+Truth& Stage::truth() {
+  if (!truth_) truth_ = std::make_unique<Truth>(opened_->scene);
+  return *truth_;
 }
 
 void Stage::choose(std::size_t view) {

@@ -10,7 +10,9 @@
 #include "files.h"
 #include "relume/picture/picture.h"
 #include "relume/render/renderer.h"
+#include "relume/trace/tracer.h"
 #include "viewer/camera_control.h"
+#include "viewer/truth.h"
 #include "viewer/viewer.h"
 
 namespace relume::app {
@@ -49,6 +51,19 @@ class Stage {
   Point objectCentre(std::size_t object) const { return object_centre_[object] + object_moved[object]; }
   bool has_probes = false;
 
+  /// Entries of light: where, and a colour by their cluster. Empty without a lightpath.
+  struct Entry {
+    Point position{0};
+    Normal normal{0, 1, 0};
+    Vec3 colour{1};
+  };
+  const std::vector<Entry>& entries() const { return entries_; }
+  /// Whether the eye sees a place of what stands still.
+  bool sees(Point p, Normal n) const;
+
+  bool compare_with_truth = false;
+  Truth& truth();
+
   const std::vector<render::PassTime>& times() const { return times_; }
   const std::string& caption() const { return caption_; }
   image::Image screenshot() const;  ///< as displayed, without panels
@@ -56,6 +71,11 @@ class Stage {
  private:
   void showView();
 
+  void readEntries(const asset::Layer& layer);
+
+  std::vector<Entry> entries_;
+  std::unique_ptr<trace::Tracer> tracer_;
+  std::unique_ptr<Truth> truth_;
   std::vector<Point> object_centre_;
   std::string caption_;
   std::unique_ptr<Opened> opened_;

@@ -9,12 +9,14 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 
 #include "relume/core/error.h"
+#include "relume/core/file.h"
 #include "relume/image/io.h"
 #include "relume/render/context.h"
 #include "viewer/panels.h"
@@ -108,19 +110,56 @@ void listen(GLFWwindow* window, Events& events) {
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned c) { eventsOf(w).question |= c == '?'; });
 }
 
+/// The first name with a number that no file has.
+std::string freeName(const char* stem, const char* ending) {
+  for (int i = 1;; ++i)
+    if (std::string name = fmt::format("{}-{:03}{}", stem, i, ending); !std::filesystem::exists(name))
+      return name;
+}
+
+/// Ends a recording by writing it.
+void toggleRecording(PanelState& state) {
+  state.record = !state.record;
+  if (state.record || state.recorded.empty()) return;
+  const std::string name = freeName("relume-path", ".json");
+  writeFileAtomically(name, toJson(state.recorded));
+  state.message = fmt::format("written: {}; relume render --path {} makes pictures of it", name, name);
+  state.recorded.clear();
+}
+
 void onKey(int key, Stage& stage, PanelState& state, GLFWwindow* window) {
   if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) stage.choose(static_cast<std::size_t>(key - GLFW_KEY_1));
   if (key == GLFW_KEY_TAB) state.panels = !state.panels;
   if (key == GLFW_KEY_F1) state.help = !state.help;
   if (key == GLFW_KEY_L) stage.addLight();
   if (key == GLFW_KEY_P) state.screenshot = true;
-  if (key == GLFW_KEY_R) state.record = !state.record, state.recorded = 0;
+  if (key == GLFW_KEY_R) toggleRecording(state);
+  if (key == GLFW_KEY_C) stage.frame.split = stage.frame.split > 0 ? 0.0f : 0.5f;
+  if (key == GLFW_KEY_N) state.entries = !state.entries;
+  if (key == GLFW_KEY_T) stage.compare_with_truth = !stage.compare_with_truth;
   if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(window, GLFW_TRUE);
   if (key == GLFW_KEY_DELETE && stage.selected >= 0 &&
       stage.selected < static_cast<int>(stage.frame.lights.size())) {
     stage.frame.lights.erase(stage.frame.lights.begin() + stage.selected);
     stage.selected = -1;
   }
+}
+
+bool asksFor(const ViewerOptions& options, const char* what) {
+  return std::find(options.show.begin(), options.show.end(), what) != options.show.end();
+}
+
+/// The window as it is, with its panels.
+image::Image windowPicture(IVec2 size) {
+  std::vector<unsigned char> rgb(3 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, rgb.data());
+  image::Image out(size.x, size.y, 3);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < 3 * size.x; ++x)
+      out.data[static_cast<std::size_t>(y * 3 * size.x + x)] = image::srgbToLinear(
+          static_cast<float>(rgb[static_cast<std::size_t>((size.y - 1 - y) * 3 * size.x + x)]) / 255.0f);
+  return out;
 }
 
 void walk(GLFWwindow* window, Stage& stage, float seconds) {
@@ -137,12 +176,6 @@ void turn(Stage& stage, bool over_handle) {
   const Vec2 by = Vec2(io.MouseDelta.x, io.MouseDelta.y) * kRadiansPerPixel;
   if (ImGui::IsMouseDown(1)) stage.camera.look(by.x, -by.y);
   if (ImGui::IsMouseDown(0) && !over_handle) stage.camera.orbit(by.x, -by.y);
-}
-
-/// The first name with a number that no file has.
-std::string freeName(const char* stem) {
-  for (int i = 1;; ++i)
-    if (std::string name = fmt::format("{}-{:03}.png", stem, i); !std::filesystem::exists(name)) return name;
 }
 
 std::unique_ptr<Stage> openFile(GLFWwindow* window, const ViewerOptions& options,
@@ -166,6 +199,12 @@ void runViewer(const ViewerOptions& options) {
   const Clock::time_point start = Clock::now();
   Clock::time_point before = start;
   const LightSet as_opened = stage->frame.lights;
+  std::vector<PathFrame> recorded;
+  std::optional<image::Image> window_picture;
+  state.entries = asksFor(options, "entries");
+  state.help = asksFor(options, "help");
+  stage->compare_with_truth = asksFor(options, "truth");
+  if (asksFor(options, "split")) stage->frame.split = 0.5f;
 
   for (int frame = 0; !glfwWindowShouldClose(window.get()) && (!options.frames || frame < options.frames);
        ++frame) {
@@ -207,25 +246,35 @@ void runViewer(const ViewerOptions& options) {
     // The times that matter are those of the picture.
     stage->draw(size);
     if (state.screenshot) {
-      const std::string name = freeName("relume");
+      const std::string name = freeName("relume", ".png");
       image::writeImage(name, stage->screenshot());
       state.message = "written: " + name;
       state.screenshot = false;
     }
     if (state.record) {
-      image::writeImage(fmt::format("relume-frame-{:05}.png", ++state.recorded), stage->screenshot());
-      state.message = fmt::format("recording: {} frames; R ends it", state.recorded);
+      state.recorded.push_back({stage->camera.viewpoint(), stage->frame.lights, stage->object_moved});
+      state.message = fmt::format("recording: {} frames; R ends it", state.recorded.size());
     }
+    state.pass_times.push_back(stage->times());
+    if (state.pass_times.size() > kHistory) state.pass_times.pop_front();
+    if (state.entries) drawEntries(*stage, Vec2(size));
     const bool over = drawHandles(*stage, Vec2(size));
+    if (stage->compare_with_truth) state.truth.draw(*stage);
     drawPanels(*stage, state);
     turn(*stage, over);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    if (options.frames > 0 && frame + 1 == options.frames && asksFor(options, "panels"))
+      window_picture = windowPicture(size);
+    if (!options.record.empty())
+      recorded.push_back({stage->camera.viewpoint(), stage->frame.lights, stage->object_moved});
     glfwSwapBuffers(window.get());
   }
-  if (!options.screenshot.empty()) image::writeImage(options.screenshot, stage->screenshot());
+  if (!options.screenshot.empty())
+    image::writeImage(options.screenshot, window_picture ? *window_picture : stage->screenshot());
+  if (!options.record.empty()) writeFileAtomically(options.record, toJson(recorded));
   if (options.frames > 0) {
     const double all = std::chrono::duration<double>(before - start).count();
     fmt::print("{}: {} frames, {:.1f} a second\n", render::deviceName(), options.frames,

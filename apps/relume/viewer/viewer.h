@@ -21,7 +21,10 @@ struct ViewerOptions {
   int shadow_size = 0;     ///< texels along a cube's face; 0: by the device
   int frames = 0;          ///< ends after so many; 0: when the window is closed
   std::string screenshot;  ///< of the last frame of those; empty: none
-  bool sweep = false;      ///< moves the first light while it runs, for measurements and tests
+  std::vector<std::string>
+      show;            ///< from the start: split, entries, truth, help; panels: in the screenshot too
+  std::string record;  ///< of those frames: a path for render --path; empty: none
+  bool sweep = false;  ///< moves the first light while it runs, for measurements and tests
 };
 
 /// Runs until the window is closed. Throws Error kUnsupported where there is no display or no OpenGL 4.5, and

@@ -194,8 +194,17 @@ void Renderer::Impl::drawSurfaces(const FrameSettings& frame) {
                 .forward = -glm::normalize(Vec3(frame.camera.world_from_camera[2])),
                 .orthographic = frame.camera.ortho_height > 0};
   lights_buffer.bindStorage(1);
-  surfaces.draw(frame, scene, shadows, eye, textures(frame.view), objects.empty() ? nullptr : &objects,
-                timer);
+  DynamicObjects* things = objects.empty() ? nullptr : &objects;
+  surfaces.draw(frame, scene, shadows, eye, textures(frame.view), things, timer);
+  if (!(frame.split > 0)) return;
+  FrameSettings left = frame;
+  left.view = frame.split_view;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, static_cast<GLsizei>(std::lround(frame.split * extent.x)), size.y);
+  glClearBufferfv(GL_COLOR, 0, clear);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  surfaces.draw(left, scene, shadows, eye, textures(left.view), things, timer);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 Renderer::Renderer(const scene::Scene& scene, const ShadowOptions& shadows) {

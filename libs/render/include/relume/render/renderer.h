@@ -59,7 +59,10 @@ struct FrameSettings {
   IVec2 size{960, 540};
   Camera camera;
   View view = View::kRelit;
-  LightSet lights;           ///< world
+  LightSet lights;  ///< world
+  /// Share of the width, from the left, that shows `split_view` instead.
+  float split = 0.0f;
+  View split_view = View::kDirect;
   Irradiance ambient{0.0f};  ///< beside the lights
   float beta = 0.1f;         ///< of View::kLit: share of every light that arrives everywhere
   Vec3 background{0.0f};     ///< linear
