@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gl_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include "relit.h"
@@ -190,6 +193,32 @@ void glPictures(const scene::Scene& scene, const asset::Asset* asset, const std:
     }
     take(i, prepared.picture(path[i].viewpoint, path[i].lights));
   }
+}
+
+std::string timesOfPath(const scene::Scene& scene, const asset::Asset* asset,
+                        const std::vector<PathFrame>& path, const picture::PictureOptions& options,
+                        const GlExtras& extras) {
+  const render::HeadlessContext context;
+  Prepared prepared(scene, asset, options, extras);
+  std::map<std::string, std::vector<double>> seconds;
+  for (const PathFrame& at : path) {
+    prepared.frame.camera = cameraOf(at.viewpoint);
+    prepared.frame.lights = at.lights;
+    prepared.renderer.draw(prepared.frame);
+    std::map<std::string, double> of_frame;
+    for (const render::PassTime& pass : prepared.renderer.times()) of_frame[pass.name] += pass.seconds;
+    for (const auto& [pass, time] : of_frame) seconds[pass].push_back(time), of_frame[pass] = time;
+  }
+  std::string text = fmt::format("{}\n", render::deviceName());
+  double sum = 0;
+  for (auto& [pass, all] : seconds) {
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    text += fmt::format("{}: {:.3f} ms\n", pass, 1e3 * *middle);
+    sum += *middle;
+  }
+  text += fmt::format("all: {:.3f} ms\ntransfer: {} bytes\n", 1e3 * sum, prepared.renderer.sampleBytes());
+  return text;
 }
 
 }  // namespace relume::app

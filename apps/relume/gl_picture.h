@@ -50,6 +50,12 @@ void glPictures(const scene::Scene& scene, const asset::Asset* asset, const std:
                 const picture::PictureOptions& options, const GlExtras& extras,
                 const std::function<void(std::size_t, const image::Image&)>& take);
 
+/// The same frames drawn as the window draws them, none read back: what the device took for each pass, as a
+/// text.
+std::string timesOfPath(const scene::Scene& scene, const asset::Asset* asset,
+                        const std::vector<PathFrame>& path, const picture::PictureOptions& options,
+                        const GlExtras& extras);
+
 /// The picture that picture::render makes, without a window, and with extras. Throws as picture::render, and
 /// Error kUnsupported where there is no OpenGL.
 image::Image glPicture(const scene::Scene& scene, const asset::Asset* asset,

@@ -42,6 +42,7 @@ struct RenderOptions {
   std::string obscurance_layer;
   std::vector<std::string> objects;
   std::string path;
+  bool times = false;
   std::string object_light = "cube";
   std::vector<std::string> relief{"steps", "shadows", "occlusion"};
   float fov_deg = 50, beta = 0.1f, obscurance = 0, bounce = 0;
@@ -183,6 +184,11 @@ GlExtras extrasOf(const RenderOptions& options, const std::vector<Group>& object
 void renderPath(const RenderOptions& options, const Opened& opened, const picture::PictureOptions& picture,
                 const GlExtras& extras) {
   const std::vector<PathFrame> path = parsePath(readTextFile(options.path), options.path);
+  if (options.times) {
+    fmt::print("{}",
+               timesOfPath(opened.scene, opened.asset ? &*opened.asset : nullptr, path, picture, extras));
+    return;
+  }
   const std::filesystem::path output = options.output;
   RenderOptions each = options;
   glPictures(opened.scene, opened.asset ? &*opened.asset : nullptr, path, picture, extras,
@@ -364,10 +370,14 @@ void addRender(CLI::App& app, Program& program) {
       "--object", options->objects,
       "repeatable: FILE.glb@x,y,z[,turn[,scale]] puts its origin there, turned by degrees; it was "
       "not there when the scene was baked");
-  command->add_option(
+  CLI::Option* path = command->add_option(
       "--path", options->path,
       "with --renderer gl: a path of camera and lamps that relume view recorded; a picture for "
       "each of its frames, OUT-00001.png and so on");
+  command
+      ->add_flag("--times", options->times,
+                 "draw the path as a window would, write nothing, and print what each pass takes (median)")
+      ->needs(path);
   command
       ->add_option("--object-light", options->object_light,
                    "with --renderer gl: indirect light on objects: of a cube map about each, of the bake's "

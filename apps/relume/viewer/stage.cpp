@@ -112,17 +112,17 @@ Stage::Stage(const ViewerOptions& options, const std::filesystem::path& file)
 void Stage::readEntries(const asset::Layer& layer) {
   const asset::Transfer transfer = asset::readTransfer(layer, opened_->asset->atlas);
   const codec::BlockMatrix& m = transfer.matrix;
-  entries_.resize(transfer.entries.size());
-  const std::size_t samples = transfer.entries.position.size() / std::max<std::size_t>(entries_.size(), 1);
-  for (std::size_t e = 0; e < entries_.size(); ++e) {
-    // The middle one of its points lies on the surface, where their mean may not.
-    entries_[e].position = transfer.entries.position[e * samples + samples / 2];
-    entries_[e].normal = transfer.entries.normal[e * samples + samples / 2];
-  }
-  for (std::size_t c = 0; c < m.clusters(); ++c)
+  const asset::Entries& entries = transfer.entries;
+  std::vector<std::uint32_t> cluster(m.columns, 0);
+  for (std::uint32_t c = 0; c < m.clusters(); ++c)
     for (std::size_t k = m.cluster_first[c]; k < m.cluster_first[c + 1]; ++k)
-      if (m.cluster_column[k] < entries_.size())
-        entries_[m.cluster_column[k]].colour = image::labelColour(static_cast<std::uint32_t>(c));
+      cluster[m.cluster_column[k]] = c;
+  for (std::size_t p = 0; p < entries.patches(); ++p) {
+    // The middle one of its points lies on the surface, where their mean may not.
+    const std::size_t middle = p * entries.samples + entries.samples / 2;
+    entries_.push_back(
+        {entries.position[middle], entries.normal[middle], image::labelColour(cluster[entries.first[p]])});
+  }
 }
 
 bool Stage::sees(Point p, Normal n) const {

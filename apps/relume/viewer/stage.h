@@ -51,7 +51,8 @@ class Stage {
   Point objectCentre(std::size_t object) const { return object_centre_[object] + object_moved[object]; }
   bool has_probes = false;
 
-  /// Entries of light: where, and a colour by their cluster. Empty without a lightpath.
+  /// Patches that light enters by: where, and a colour by the cluster of their first entry. Empty without a
+  /// lightpath.
   struct Entry {
     Point position{0};
     Normal normal{0, 1, 0};
