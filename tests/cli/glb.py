@@ -70,6 +70,14 @@ class Builder:
         self.json["scenes"][0]["nodes"].append(len(self.json["nodes"]) - 1)
         return len(self.json["nodes"]) - 1
 
+    def coloured_room(self):
+        """4 x 3 x 4 m, white with a red wall, open to the front (+z), with a block in it."""
+        white, red = self.material([0.7, 0.7, 0.7]), self.material([0.7, 0.2, 0.1])
+        self.node(self.quads([([-2, 0, -2], [0, 0, 4], [4, 0, 0]), ([-2, 3, -2], [4, 0, 0], [0, 0, 4]), ([-2, 0, -2], [4, 0, 0], [0, 3, 0]),
+                              ([2, 0, -2], [0, 0, 4], [0, 3, 0])], white), "room")
+        self.node(self.quads([([-2, 0, -2], [0, 3, 0], [0, 0, 4])], red), "red wall")
+        self.node(self.box([0.3, 0, -1], [0.6, 1.4, 0.6], white), "block")
+
     def light(self, kind, intensity, translation=(0, 0, 0), colour=(1, 1, 1), **more):
         extension = self.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})
         used = self.json.setdefault("extensionsUsed", [])

@@ -14,13 +14,9 @@ SMALL = ["--quality", "draft", "--atlas-size", 64]
 class DayTest(test_cli.CliTest):
     def setUp(self):
         super().setUp()
-        # A room with an open front to the south (+z), a block in it, and a lamp post that lights at dusk.
+        # Open to the south, with a lamp post that lights at dusk.
         b = glb.Builder()
-        white, red = b.material([0.7, 0.7, 0.7]), b.material([0.7, 0.2, 0.1])
-        b.node(b.quads([([-2, 0, -2], [0, 0, 4], [4, 0, 0]), ([-2, 3, -2], [4, 0, 0], [0, 0, 4]), ([-2, 0, -2], [4, 0, 0], [0, 3, 0]),
-                        ([2, 0, -2], [0, 0, 4], [0, 3, 0])], white), "room")
-        b.node(b.quads([([-2, 0, -2], [0, 3, 0], [0, 0, 4])], red), "red wall")
-        b.node(b.box([0.3, 0, -1], [0.6, 1.4, 0.6], white), "block")
+        b.coloured_room()
         b.json.setdefault("cameras", []).append({"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}})
         b.json["nodes"].append({"camera": 0, "translation": [0, 1.4, 5], "name": "camera"})
         b.json["scenes"][0]["nodes"].append(len(b.json["nodes"]) - 1)

@@ -15,13 +15,8 @@ SMALL = "lightpath:count=128,size=64,error=0.03"
 class LightPath(test_cli.CliTest):
     def setUp(self):
         super().setUp()
-        # A room of two colours, open to the front, with a block in it.
         b = glb.Builder()
-        white, red = b.material([0.7, 0.7, 0.7]), b.material([0.7, 0.2, 0.1])
-        b.node(b.quads([([-2, 0, -2], [0, 0, 4], [4, 0, 0]), ([-2, 3, -2], [4, 0, 0], [0, 0, 4]), ([-2, 0, -2], [4, 0, 0], [0, 3, 0]),
-                        ([2, 0, -2], [0, 0, 4], [0, 3, 0])], white), "room")
-        b.node(b.quads([([-2, 0, -2], [0, 3, 0], [0, 0, 4])], red), "red wall")
-        b.node(b.box([0.3, 0, -1], [0.6, 1.4, 0.6], white), "block")
+        b.coloured_room()
         self.room = b.write(self.folder / "room.glb")
         self.lights = self.folder / "lights.json"
 

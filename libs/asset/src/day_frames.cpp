@@ -8,6 +8,7 @@
 #include <string>
 
 #include "relume/core/error.h"
+#include "table_numbers.h"
 
 namespace relume::asset {
 namespace {
@@ -16,24 +17,7 @@ constexpr std::size_t kMostPixels = std::size_t{1} << 28;
 constexpr std::size_t kMostComponents = 256;
 constexpr double kTooLate = 1441;  // minutes
 
-[[noreturn]] void corrupt(const Layer& layer, const std::string& problem) {
-  throw Error(ErrorCode::kCorruptAsset, "layer " + layer.name, problem,
-              "the file was damaged; bake it again");
-}
-
 std::string imageName(std::size_t component) { return fmt::format("image{}", component); }
-
-/// The numbers of a table of a type and shape.
-template <class T>
-const std::vector<T>& numbers(const Layer& layer, const std::string& name, std::size_t channels,
-                              std::size_t rows) {
-  const Table* table = layer.findTable(name);
-  if (!table) corrupt(layer, fmt::format("has no table '{}'", name));
-  const auto* values = std::get_if<std::vector<T>>(&table->values);
-  if (!values || table->channels != channels || values->size() != rows * channels)
-    corrupt(layer, fmt::format("table '{}' has the wrong shape", name));
-  return *values;
-}
 
 std::size_t rowsOf(const Layer& layer, const char* name) {
   const Table* table = layer.findTable(name);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "relume/core/error.h"
+#include "table_numbers.h"
 
 namespace relume::asset {
 namespace {
@@ -15,24 +16,7 @@ namespace {
 constexpr std::size_t kMostDirections = 64;
 constexpr float kUnitTolerance = 1e-3f;
 
-[[noreturn]] void corrupt(const Layer& layer, const std::string& problem) {
-  throw Error(ErrorCode::kCorruptAsset, "layer " + layer.name, problem,
-              "the file was damaged; bake it again");
-}
-
 std::string mapName(std::size_t direction) { return fmt::format("map{}", direction); }
-
-/// The numbers of a table of a type and shape; `rows` 0: any.
-template <class T>
-const std::vector<T>& numbers(const Layer& layer, const std::string& name, std::size_t channels,
-                              std::size_t rows) {
-  const Table* table = layer.findTable(name);
-  if (!table) corrupt(layer, fmt::format("has no table '{}'", name));
-  const auto* values = std::get_if<std::vector<T>>(&table->values);
-  if (!values || table->channels != channels || (rows > 0 && values->size() != rows * channels))
-    corrupt(layer, fmt::format("table '{}' has the wrong shape", name));
-  return *values;
-}
 
 }  // namespace
 
@@ -56,7 +40,7 @@ std::vector<Table> tablesOf(const DirectionMaps& maps) {
 
 DirectionMaps directionMapsOf(const Layer& layer, const AtlasTable& atlas) {
   DirectionMaps maps;
-  const auto& directions = numbers<float>(layer, "directions", 3, 0);
+  const auto& directions = numbers<float>(layer, "directions", 3);
   const std::size_t n = directions.size() / 3;
   if (n == 0 || n > kMostDirections) corrupt(layer, fmt::format("has {} directions", n));
   for (std::size_t i = 0; i < n; ++i) {
@@ -64,7 +48,7 @@ DirectionMaps directionMapsOf(const Layer& layer, const AtlasTable& atlas) {
     if (!(std::abs(glm::length(maps.directions.back()) - 1) < kUnitTolerance))
       corrupt(layer, fmt::format("direction {} is not a unit vector", i));
   }
-  const auto& charts = numbers<std::uint32_t>(layer, "charts", 5, 0);
+  const auto& charts = numbers<std::uint32_t>(layer, "charts", 5);
   const std::uint32_t known =
       atlas.chart.empty() ? 0 : *std::max_element(atlas.chart.begin(), atlas.chart.end()) + 1;
   if (charts.size() / 5 < known)
@@ -85,7 +69,7 @@ DirectionMaps directionMapsOf(const Layer& layer, const AtlasTable& atlas) {
   const auto& sizes = numbers<std::uint32_t>(layer, "sizes", 2, n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint64_t texels = std::uint64_t{sizes[2 * i]} * sizes[2 * i + 1];
-    const auto& rgb = numbers<std::uint8_t>(layer, mapName(i), 3, 0);
+    const auto& rgb = numbers<std::uint8_t>(layer, mapName(i), 3);
     if (rgb.size() % 3 != 0 || rgb.size() / 3 != texels)
       corrupt(layer, fmt::format("map {} has the wrong size", i));
     maps.textures.push_back({sizes[2 * i], sizes[2 * i + 1], rgb});

@@ -7,29 +7,12 @@
 #include <random>
 
 #include "made_bake.h"
+#include "made_lights.h"
 #include "relume/core/error.h"
 #include "relume/core/parallel.h"
 
 namespace relume::relight {
 namespace {
-
-LightSet someLights(std::size_t count) {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<float> unit;
-  LightSet lights(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Light& l = lights[i];
-    l.kind = static_cast<Light::Kind>(i % 4);
-    l.colour = {unit(random), unit(random), unit(random)};
-    l.intensity = 10 * unit(random);
-    l.position = Vec3(4, 3, 5) * Vec3(unit(random), unit(random), unit(random));
-    l.direction = glm::normalize(Vec3(unit(random) - 0.5f, -1, unit(random) - 0.5f));
-    l.range = i % 3 == 0 ? 4 : kInfinity;
-    l.area = 0.1f + unit(random);
-    l.two_sided = i % 8 == 3;
-  }
-  return lights;
-}
 
 std::vector<Irradiance> copy(std::span<const Irradiance> values) { return {values.begin(), values.end()}; }
 

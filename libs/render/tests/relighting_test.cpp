@@ -2,10 +2,10 @@
 // Relighting on the device against the run-time library, where nothing throws shadows: entries, exits and
 // texels under every kind of light, and after lights have changed.
 #include <cmath>
-#include <random>
 
 #include "gl_test.h"
 #include "made_bake.h"
+#include "made_lights.h"
 #include "relume/relight/transfer_relighter.h"
 #include "relume/render/renderer.h"
 
@@ -13,25 +13,6 @@ namespace relume::render {
 namespace {
 
 using RelightingTest = GlTest;
-
-LightSet someLights(std::size_t count) {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<float> unit;
-  LightSet lights(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Light& l = lights[i];
-    l.kind = static_cast<Light::Kind>(i % 4);
-    l.colour = {unit(random), unit(random), unit(random)};
-    l.intensity = 10 * unit(random);
-    l.position = Vec3(4, 3, 5) * Vec3(unit(random), unit(random), unit(random));
-    l.direction = glm::normalize(Vec3(unit(random) - 0.5f, -1, unit(random) - 0.5f));
-    l.range = i % 3 == 0 ? 4 : kInfinity;
-    l.inner_cone = 0.2f, l.outer_cone = 0.9f;
-    l.area = 0.1f + unit(random);
-    l.two_sided = i % 8 == 3;
-  }
-  return lights;
-}
 
 void expectSame(std::span<const Irradiance> got, std::span<const Irradiance> expected, const char* what) {
   ASSERT_EQ(got.size(), expected.size()) << what;
@@ -72,13 +53,13 @@ TEST_F(RelightingTest, IsThatOfTheRunTime) {
     const scene::Scene nothing;
     Renderer renderer(nothing, {.cube_size = 64, .plane_size = 64});
     renderer.setTransfer(bake, bake.layers[0]);
-    LightSet lights = someLights(5);
+    LightSet lights = relight::someLights(5);
     expectRunTimes(renderer, relighter, lights, "first");
     lights[2].colour = {1, 0, 3};
     expectRunTimes(renderer, relighter, lights, "another colour");
     lights[0].position.x += 1;
     expectRunTimes(renderer, relighter, lights, "moved");
-    lights = someLights(23);
+    lights = relight::someLights(23);
     expectRunTimes(renderer, relighter, lights, "more lights");
     lights.resize(2);
     expectRunTimes(renderer, relighter, lights, "fewer lights");
