@@ -68,24 +68,7 @@ TEST(LightSequence, TheColouredRoomAgreesWithRadiosity) {
 }
 
 TEST(LightSequence, BacksReflectToo) {
-  // A room whose walls face outwards: they are met from behind, and light goes on from there.
-  const auto room = [](bool outwards) {
-    scene::Scene scene;
-    scene::Mesh walls, plate;
-    made::addBox(walls, {-2, -2, 0}, {2, 2, 3});
-    if (!outwards) {
-      for (UVec3& t : walls.triangles) std::swap(t.y, t.z);
-      for (Normal& n : walls.normals) n = -n;
-    }
-    made::addInstance(scene, std::move(walls));
-    made::addQuad(plate, {-0.5f, -0.5f, 1}, {1, 0, 0}, {0, 1, 0});
-    made::addInstance(scene, std::move(plate));
-    scene.materials[0].base_colour = Vec4(0.5f, 0.5f, 0.5f, 1);
-    Light& light = scene.lights.emplace_back();
-    light.position = {0.3f, 0.2f, 2}, light.intensity = 10;
-    return scene;
-  };
-  const Sequence in(room(false), 128), out(room(true), 128);
+  const Sequence in(made::roomOfWalls(false), 128), out(made::roomOfWalls(true), 128);
   const double expected = in.mean(in.light(), 1).x;
   EXPECT_GT(expected, 0.5);
   EXPECT_NEAR(out.mean(out.light(), 1).x, expected, 0.015 * expected);

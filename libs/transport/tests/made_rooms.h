@@ -94,4 +94,22 @@ inline scene::Scene cavity(float radius, float cap, Vec3 albedo) {
   return scene;
 }
 
+/// A lamp and a plate in a room; walls that face outwards are met from behind, and light goes on from there.
+inline scene::Scene roomOfWalls(bool outwards) {
+  scene::Scene scene;
+  scene::Mesh walls, plate;
+  addBox(walls, {-2, -2, 0}, {2, 2, 3});
+  if (!outwards) {
+    for (UVec3& t : walls.triangles) std::swap(t.y, t.z);
+    for (Normal& n : walls.normals) n = -n;
+  }
+  addInstance(scene, std::move(walls));
+  addQuad(plate, {-0.5f, -0.5f, 1}, {1, 0, 0}, {0, 1, 0});
+  addInstance(scene, std::move(plate));
+  scene.materials[0].base_colour = Vec4(0.5f, 0.5f, 0.5f, 1);
+  Light& light = scene.lights.emplace_back();
+  light.position = {0.3f, 0.2f, 2}, light.intensity = 10;
+  return scene;
+}
+
 }  // namespace relume::transport::made
