@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Rays per second beside bare Embree, and relighting: runs the benchmark programs, fills docs/performance.md.
 
-    bench/rates.py [BUILD_DIR] [rays|gather|relighting|transfer ...]        (default: build/bench, made by scripts/build bench; all four)
+    bench/rates.py [BUILD_DIR] [rays|gather|relighting|transfer|photons ...]        (default: build/bench, made by scripts/build bench; all five)
 """
 import json
 import pathlib
@@ -12,6 +12,7 @@ import tempfile
 from page import ROOT, fill, machine, table
 
 PAGE = ROOT / "docs/performance.md"
+PAPER_PATHS_PER_SECOND = 77e6 / (7.2 * 60) / 22  # a processor; Hey, Purgathofer 2002
 
 
 def run(program, pattern):
@@ -22,6 +23,25 @@ def run(program, pattern):
                        check=True, stdout=subprocess.DEVNULL)
         rows = json.loads(out.read_text())["benchmarks"]
     return {row["run_name"]: row for row in rows if row.get("aggregate_name") == "median"}
+
+
+def photons(build):
+    """Each the mean of two passes of two million paths after one that warms up."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out.json"
+        subprocess.run([build / "libs/transport/relume_transport_bench", "--benchmark_filter=transport.photons", f"--benchmark_out={out}"], check=True,
+                       stdout=subprocess.DEVNULL)
+        return photon_table(json.loads(out.read_text())["benchmarks"])
+
+
+def photon_table(found):
+    rows = []
+    for row in found:
+        where, materials = row["name"].split("/")[0].split(".")[2:4]
+        rate = row["paths_per_second_per_core"]
+        rows.append((where, materials, f"{row['threads']:.0f}", f"{row['rays_per_path']:.1f}", f"{rate * row['threads'] / 1e6:.2f}", f"{rate / 1e6:.2f}",
+                     f"{rate / PAPER_PATHS_PER_SECOND:.0f}"))
+    return table(("scene", "materials", "threads", "rays a path", "paths, million/s", "a core, million/s", "times the paper's"), rows)
 
 
 def rays(build):
@@ -67,7 +87,7 @@ def transfer(build):
 
 def main():
     build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/bench")
-    tables = {"rays": rays, "gather": gather, "relighting": relighting, "transfer": transfer}
+    tables = {"rays": rays, "gather": gather, "relighting": relighting, "transfer": transfer, "photons": photons}
     for name in sys.argv[2:] or tables:
         fill(PAGE, name, f"Measured on {machine()}.\n\n{tables[name](build)}")
     print(f"wrote {PAGE}")
