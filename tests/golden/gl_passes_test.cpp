@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Golden pictures of what OpenGL alone shows: relief, and things that move. Stored as Mesa's software
-// renderer draws them; the tolerance is for other devices' rounding of textures and edges. Other passes are
-// held against rays (gl_pictures_test.cpp) and closed forms (libs/render/tests).
+// Golden pictures of passes as OpenGL draws them: shadow maps by their shadows, indirect light with its
+// obscurance and last bounce, relief, and things that move. Stored as Mesa's software renderer draws them;
+// the tolerance, in FLIP, is for other devices' rounding of textures and edges. Other passes are held against
+// rays (gl_pictures_test.cpp) and closed forms (libs/render/tests).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,6 +37,27 @@ testing::AssertionResult asStored(render::Renderer& renderer, const render::Fram
                                   const char* name) {
   return golden::matches(renderer.picture(frame, 4), std::filesystem::path(RELUME_GOLDEN_DIR) / name,
                          kDevices);
+}
+
+TEST_F(GlPass, ShadowsByCubes) {
+  render::Renderer renderer(stage(), {.cube_size = 256, .plane_size = 64});
+  render::FrameSettings frame = stageFrame();
+  frame.view = render::View::kDirect;
+  frame.full_materials = false;
+  EXPECT_TRUE(asStored(renderer, frame, "gl-direct.png"));
+}
+
+TEST_F(GlPass, IndirectLight) {
+  const asset::Asset bake = stageRelitBake();
+  render::Renderer renderer(stage(), {.cube_size = 128, .plane_size = 64});
+  renderer.setValues(bake.atlas, bake.layers[1].plane("value"));
+  renderer.setObscurance(bake.atlas, bake.layers[2].plane("value"));
+  render::FrameSettings frame = stageFrame();
+  frame.view = render::View::kIndirect;
+  frame.full_materials = false;
+  EXPECT_TRUE(asStored(renderer, frame, "gl-indirect.png"));
+  frame.obscurance_gain = 1, frame.bounce_gain = 0.2f;
+  EXPECT_TRUE(asStored(renderer, frame, "gl-indirect-composed.png"));
 }
 
 TEST_F(GlPass, Relief) {
